@@ -1,0 +1,32 @@
+#pragma once
+// How a pass touches a resource. The barrier before a pass follows from the accesses of the pass
+// and of the last writer, by one table (access.cpp).
+
+#include <cstdint>
+
+namespace tyndall::fg {
+
+enum class Access : uint32_t {
+    // reads
+    Sampled = 0,       // texture unit, any stage
+    StorageRead = 1,   // image or shader storage, read only
+    Uniform = 2,       // uniform buffer
+    Indirect = 3,      // draw or dispatch arguments
+    Vertex = 4,        // vertex attributes or indices
+    TransferRead = 5,  // copy source, read-back
+    DepthRead = 6,     // depth test without writes; may be Sampled in the same pass
+    // writes
+    StorageWrite = 7,  // image or shader storage; old content is kept where it is not written
+    ColorTarget = 8,
+    DepthTarget = 9,
+    TransferWrite = 10, // copy destination, clear
+};
+
+bool isWrite(Access access);
+const char* accessName(Access access);
+/// Does the content written by `write` need a memory barrier before `next`? (Incoherent writes: image and
+/// storage. Render-target writes are ordered by GL itself, except that sampling what was attached
+/// needs none either once the framebuffer changed.) Returns the GL barrier bits as a plain number.
+uint32_t barrierBits(Access write, Access next, bool isBuffer);
+
+} // namespace tyndall::fg

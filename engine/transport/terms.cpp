@@ -1,0 +1,44 @@
+#include "transport/terms.h"
+
+#include <array>
+#include <vector>
+
+#include "core/settings.h"
+
+namespace tyndall {
+namespace {
+constexpr std::array<std::string_view, kTermCount> kNames = {"LE", "LSE", "LVE", "LSSE", "LVSE", "LSVE",
+                                                             "LVVE", "LXSSE", "LXVSE", "LXSVE", "LXVVE"};
+}
+
+std::string_view termName(Term term) { return kNames[uint32_t(term)]; }
+
+std::string termNames(TermSet set) {
+    std::string names;
+    for (uint32_t i = 0; i < kTermCount; ++i)
+        if (set & bit(Term(i))) names += (names.empty() ? "" : ",") + std::string(kNames[i]);
+    return names;
+}
+
+Result<TermSet> parseTerms(std::string_view list) {
+    TermSet set = 0;
+    while (!list.empty()) {
+        const size_t comma = std::min(list.find(','), list.size());
+        const std::string_view word = list.substr(0, comma);
+        list.remove_prefix(std::min(comma + 1, list.size()));
+        if (word == "all") { set |= kAllTerms; continue; }
+        if (word == "direct") { set |= kDirectTerms; continue; }
+        uint32_t index = 0;
+        while (index < kTermCount && kNames[index] != word) ++index;
+        if (index == kTermCount) {
+            const std::string nearest = nearestName(word, kNames);
+            return Error{"transport term '" + std::string(word) + "' is unknown: " +
+                         (nearest.empty() ? "the terms are " + termNames(kAllTerms)
+                                          : "did you mean '" + nearest + "'?")};
+        }
+        set |= bit(Term(index));
+    }
+    return set;
+}
+
+} // namespace tyndall
