@@ -24,9 +24,9 @@ enum class Access : uint32_t {
 
 bool isWrite(Access access);
 const char* accessName(Access access);
-/// Does the content written by `write` need a memory barrier before `next`? (Incoherent writes: image and
-/// storage. Render-target writes are ordered by GL itself, except that sampling what was attached
-/// needs none either once the framebuffer changed.) Returns the GL barrier bits as a plain number.
-uint32_t barrierBits(Access write, Access next, bool isBuffer);
+/// The GL barrier bits, as a plain number, that `next` needs after `previous` on the same storage; 0 where GL orders them itself.
+/// Only shader writes to images and storage buffers are incoherent (OpenGL 4.5, section 7.12.2): what follows them must
+/// see them, and they themselves must wait for earlier reads and writes.
+uint32_t barrierBits(Access previous, Access next, bool isBuffer);
 
 } // namespace tyndall::fg

@@ -44,7 +44,8 @@ public:
     /// Its writes keep the content of the version before; what it creates is *absent* (FrameGraph::isAbsent).
     virtual void skip(const char* reason) = 0;
     /// The pass's result depends on nothing but its inputs' content and `key` (a hash of its settings, a
-    /// scene version): when neither changed since it last ran, its created resources are kept and it does not run.
+    /// scene version): when neither changed since it last ran, its created resources are kept and it does not run. What it
+    /// writes without reading it must not depend on the old content.
     virtual void cacheBy(uint64_t key) = 0;
     /// Runs even if nobody reads its outputs (read-backs, debug counters).
     virtual void sideEffect() = 0;
@@ -238,9 +239,21 @@ inline RasterCommand PassContext::raster(const char* vertexShader, const char* f
 }
 
 /// A resource with a past: `previous` holds what `current` held last frame (the same pass must write all of
-/// `current`). `wasReset` is true in the first frame, after a change of size, and after resetHistory().
+/// `current`). `wasReset` is true in the first frame, after a change of size, and after resetHistory(). Where the writer of
+/// `current` is skipped or culled nothing advances: `current` then reads as `previous`, which stays for the next frame.
 struct TextureHistory {
     TextureHandle previous, current;
+    bool wasReset;
+};
+
+/// A resource that outlives the frame. `wasReset` is true while nothing has been written to it since it was created, changed its
+/// description or was reset: it then holds zeros (NaN in poison mode).
+struct PersistentTexture {
+    TextureHandle handle;
+    bool wasReset;
+};
+struct PersistentBuffer {
+    BufferHandle handle;
     bool wasReset;
 };
 
@@ -256,6 +269,14 @@ public:
     virtual bool isAbsent(BufferHandle handle) const = 0;
     /// A resource that outlives the frame, registered with the executor under `name`.
     virtual TextureHistory historyTexture(const char* name, const TextureDesc& desc) = 0;
+    /// A single resource that outlives the frame, found again by `name`: an accumulation buffer. Whoever reads and writes it in
+    /// one pass declares both. Passes that write to it are never culled.
+    virtual PersistentTexture persistentTexture(const char* name, const TextureDesc& desc) = 0;
+    virtual PersistentBuffer persistentBuffer(const char* name, const BufferDesc& desc) = 0;
+    /// Brings something registered with the executor under the graph's eyes: ordered, dumped, and an input of cached passes.
+    /// `contentVersion` (core/version.h) changes whenever its content does.
+    virtual TextureHandle importTexture(const char* name, StaticTexture texture, const TextureDesc& desc, uint64_t contentVersion) = 0;
+    virtual BufferHandle importBuffer(const char* name, StaticBuffer buffer, const BufferDesc& desc, uint64_t contentVersion) = 0;
     /// Content that must exist at the end: everything that it does not need is culled.
     virtual void markOutput(TextureHandle handle) = 0;
     virtual void markOutput(BufferHandle handle) = 0;
