@@ -1,10 +1,12 @@
 #pragma once
 // A linear image in memory and its files. Rows run from the top; channels are named as in OpenEXR.
 
+#include <cstdint>
 #include <filesystem>
 #include <map>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/result.h"
@@ -19,9 +21,9 @@ struct Image {
     std::vector<float> pixels;
 
     Image() = default;
-    Image(int width, int height, int channels)
-        : width(width), height(height), channels(channels),
-          pixels(size_t(width) * size_t(height) * size_t(channels), 0.0f) {}
+    Image(int columns, int rows, int channelCount)
+        : width(columns), height(rows), channels(channelCount),
+          pixels(size_t(columns) * size_t(rows) * size_t(channelCount), 0.0f) {}
 
     [[nodiscard]] float* at(int x, int y) {
         return pixels.data() + (size_t(y) * size_t(width) + size_t(x)) * size_t(channels);

@@ -1,0 +1,2 @@
+tyndall_test(unit_image LABEL unit SOURCES image_exr_test.cpp image_hdr_test.cpp image_file_test.cpp
+  DEPENDS Tyndall::core fmt::fmt)
