@@ -57,14 +57,12 @@ struct FrameInputs {
     MediaResources media;
     SceneChange scene;
     TermSet terms;            // that the plan gives to this plugin
-    fg::TextureHandle color;  // view-sized RGBA32F, the image so far: only for post effects
 };
 
 /// Null handles: not produced. All view-sized.
 struct FrameOutputs {
     fg::TextureHandle inScatter;         // RGBA32F nits reaching the eye from media, for the granted terms in media
     fg::TextureHandle surfaceRadiance;   // RGBA32F nits leaving surfaces towards the eye (before media), for the granted terms on surfaces
-    fg::TextureHandle color;             // a post effect's replacement for FrameInputs::color
 };
 
 class Plugin {
@@ -80,6 +78,8 @@ public:
     virtual void sceneChanged(const SceneChange& change) = 0;
     /// Adds this frame's passes for `technique` (an index into info().techniques).
     virtual FrameOutputs addPasses(fg::FrameGraph& graph, uint32_t technique, const FrameInputs& inputs) = 0;
+    /// Adds passes that change the finished linear picture (`color`, view-sized RGBA32F nits); returns the new one, or `color`.
+    virtual fg::TextureHandle addPostPasses(fg::FrameGraph& graph, const FrameInputs& inputs, fg::TextureHandle color) = 0;
     /// Frees the plugin with the allocator that made it.
     virtual void destroy() = 0;
 

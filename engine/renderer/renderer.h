@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -12,12 +13,15 @@
 #include "core/settings.h"
 #include "framegraph/gl/executor.h"
 #include "gl/context.h"
+#include "plugin/plugin_api.h"
 #include "scene/scene.h"
 #include "transport/plan.h"
 
 namespace tyndall {
 
 struct RendererOptions {
+    /// Plugins linked into the program: plugin::builtinPlugins().
+    std::span<const plugin::EntryPoint> builtinPlugins;
     /// Shared-library plugins to load; one that carries the name of a built-in plugin replaces it. A refusal is an error here.
     std::vector<std::filesystem::path> pluginFiles;
     /// Folders whose shared libraries are loaded too; a refusal there is a warning.

@@ -1,0 +1,45 @@
+# tyndall_plugin(name SOURCES …): builds a plugin twice, as a static library for the list of built-in plugins and as a shared
+# library `lib/plugins/name.so` that --plugin loads. The sources are the same; only the entry point's name differs.
+function(tyndall_plugin name)
+  cmake_parse_arguments(ARG "" "" "SOURCES" ${ARGN})
+  add_library(tyndall_plugin_${name} STATIC ${ARG_SOURCES})
+  add_library(tyndall_plugin_${name}_shared MODULE ${ARG_SOURCES})
+  target_compile_definitions(tyndall_plugin_${name}_shared PRIVATE TYNDALL_PLUGIN_SHARED)
+  set_target_properties(tyndall_plugin_${name}_shared PROPERTIES PREFIX "" OUTPUT_NAME ${name}
+    LIBRARY_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/lib/plugins CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON)
+  target_link_options(tyndall_plugin_${name}_shared PRIVATE -Wl,--exclude-libs,ALL)
+  foreach(target tyndall_plugin_${name} tyndall_plugin_${name}_shared)
+    target_include_directories(${target} PRIVATE ${CMAKE_SOURCE_DIR}/plugins)
+    target_link_libraries(${target} PRIVATE tyndall_warnings PUBLIC Tyndall::core)
+  endforeach()
+  set_property(GLOBAL APPEND PROPERTY TYNDALL_PLUGINS ${name})
+endfunction()
+
+# A source file with the entry points of every plugin declared so far, as the target Tyndall::builtin_plugins.
+function(tyndall_builtin_plugins)
+  get_property(names GLOBAL PROPERTY TYNDALL_PLUGINS)
+  set(declarations "")
+  set(entries "")
+  foreach(name ${names})
+    string(APPEND declarations "extern \"C\" const tyndall::plugin::PluginDescriptor* tyndall_plugin_${name}();\n")
+    string(APPEND entries "    tyndall_plugin_${name},\n")
+  endforeach()
+  file(CONFIGURE OUTPUT ${CMAKE_BINARY_DIR}/generated/builtin_plugins.cpp @ONLY CONTENT
+"// Made by cmake/plugin.cmake from the plugins declared in plugins/CMakeLists.txt.
+#include \"plugin/builtin_plugins.h\"
+
+@declarations@
+namespace tyndall::plugin {
+
+static const EntryPoint kEntryPoints[] = {
+@entries@};
+
+std::span<const EntryPoint> builtinPlugins() { return kEntryPoints; }
+
+} // namespace tyndall::plugin
+")
+  add_library(tyndall_builtin_plugins STATIC ${CMAKE_BINARY_DIR}/generated/builtin_plugins.cpp)
+  add_library(Tyndall::builtin_plugins ALIAS tyndall_builtin_plugins)
+  list(TRANSFORM names PREPEND tyndall_plugin_ OUTPUT_VARIABLE libraries)
+  target_link_libraries(tyndall_builtin_plugins PUBLIC Tyndall::plugin PRIVATE ${libraries})
+endfunction()

@@ -1,0 +1,27 @@
+#pragma once
+// The images of one frame, one a term of light transport (or one a union that a technique computes jointly).
+
+#include <array>
+
+#include "framegraph/handle.h"
+#include "transport/terms.h"
+
+namespace tyndall {
+
+inline constexpr size_t kMaxTermImages = 8;
+
+struct TermImageHandle {
+    TermSet terms = 0;
+    fg::TextureHandle image; // RGBA32F, nits reaching the eye
+};
+
+/// In the order in which they are summed. The first three are LE, LSE and LVE when they are rendered.
+struct TermImages {
+    std::array<TermImageHandle, kMaxTermImages> images{};
+    uint32_t count = 0;
+    void add(TermSet terms, fg::TextureHandle image);
+    [[nodiscard]] fg::TextureHandle find(Term term) const;
+    void replace(Term term, fg::TextureHandle image);
+};
+
+} // namespace tyndall

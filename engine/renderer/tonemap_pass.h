@@ -1,0 +1,26 @@
+#pragma once
+// Exposure and tone curve: the only place where a picture leaves linear nits.
+
+#include "core/settings.h"
+#include "framegraph/frame_graph.h"
+
+namespace tyndall {
+
+enum class ToneCurve : int32_t { Linear = 0, Aces = 1, Agx = 2, Neutral = 3 };
+
+struct PostSettings {
+    ToneCurve curve;
+    bool dither;
+    float exposureCompensation; // EV, added to the scene's
+};
+std::span<const SettingDesc> postSettings();
+
+struct Display {
+    fg::TextureHandle image;          // RGBA8, sRGB-encoded
+    fg::BufferHandle invalidPixels;   // two counters: non-finite, negative (see shaders/post/tonemap.comp)
+};
+
+/// `color` in nits at EV100 `ev100`: 1.2·2^EV100 nits are display white (ISO 2720's saturation-based exposure).
+Display addTonemapPass(fg::FrameGraph& graph, fg::TextureHandle color, float ev100, const PostSettings& settings, uint32_t seed);
+
+} // namespace tyndall

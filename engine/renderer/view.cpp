@@ -1,0 +1,103 @@
+#include "renderer/view.h"
+
+#include <cmath>
+
+namespace tyndall {
+namespace {
+
+// The plastic-number sequence (Roberts, "The Unreasonable Effectiveness of Quasirandom Sequences", 2018): well spread for
+// every number of frames. Offset by half, so that the mean of n points tends to the centre quickly.
+dvec2 quasirandom(uint32_t index) {
+    constexpr double kA1 = 0.75487766624669276005, kA2 = 0.56984029099805326591;
+    const double x = 0.5 + kA1 * double(index), y = 0.5 + kA2 * double(index);
+    return {x - std::floor(x), y - std::floor(y)};
+}
+
+/// Reversed depth, far plane at infinity: depth = near / distance along the axis.
+dmat4 perspective(const Camera& camera, double aspect) {
+    const double f = 1.0 / std::tan(0.5 * camera.yfov);
+    dmat4 m(0.0);
+    m[0][0] = f / aspect;
+    m[1][1] = f;
+    m[3][2] = camera.znear;
+    m[2][3] = -1.0;
+    return m;
+}
+
+/// Reversed depth from 1 at the camera's plane to 0 at `farDistance`.
+dmat4 orthographic(const Camera& camera, double aspect, double farDistance) {
+    dmat4 m(1.0);
+    m[0][0] = 1.0 / (camera.ymag * aspect);
+    m[1][1] = 1.0 / camera.ymag;
+    m[2][2] = 1.0 / farDistance;
+    m[3][2] = 1.0;
+    return m;
+}
+
+dmat4 withoutScale(const dmat4& worldFromCamera) {
+    dmat4 m = worldFromCamera;
+    // Gram-Schmidt from the viewing axis: shear and mirror go as well, as a lens has neither.
+    const dvec3 z = glm::normalize(dvec3(m[2]));
+    dvec3 x = dvec3(m[0]) - z * glm::dot(dvec3(m[0]), z);
+    if (!(glm::dot(x, x) > 0)) x = std::abs(z.y) < 0.9 ? glm::cross(dvec3(0, 1, 0), z) : glm::cross(dvec3(1, 0, 0), z);
+    x = glm::normalize(x);
+    m[0] = dvec4(x, 0);
+    m[1] = dvec4(glm::cross(z, x), 0);
+    m[2] = dvec4(z, 0);
+    return m;
+}
+
+} // namespace
+
+dvec3 chooseRenderOrigin(const dvec3& cameraPosition, const Bounds& sceneBounds, const dvec3& previousOrigin) {
+    const double radius = sceneBounds.empty() ? 1.0 : std::max(1e-3, 0.5 * glm::length(sceneBounds.extent()));
+    if (glm::length(cameraPosition - previousOrigin) < 8.0 * radius) return previousOrigin;
+    // Close enough to the world's origin that single precision loses nothing: the common case, and the simplest numbers.
+    if (glm::length(cameraPosition) < 8.0 * radius) return dvec3(0);
+    return glm::round(cameraPosition);
+}
+
+ViewResources makeView(const ViewRequest& request) {
+    CHECK(request.camera && request.width > 0 && request.height > 0);
+    const Camera& camera = *request.camera;
+    const double aspect = double(request.width) / double(request.height);
+    dmat4 renderFromCamera = withoutScale(request.worldFromCamera);
+    renderFromCamera[3] -= dvec4(request.renderOrigin, 0);
+
+    const dvec2 point = quasirandom(request.frameIndex + request.seed * 7919u);
+    const dvec2 jitter = request.converge ? point - 0.5 : dvec2(0);
+    dmat4 jitterClip(1.0);
+    jitterClip[3] = dvec4(2.0 * jitter.x / request.width, 2.0 * jitter.y / request.height, 0, 1);
+
+    const bool parallel = camera.type == CameraType::Orthographic;
+    const double farDistance = 4.0 * request.sceneRadius;
+    const dmat4 clipFromView = jitterClip * (parallel ? orthographic(camera, aspect, farDistance) : perspective(camera, aspect));
+    const dmat4 viewFromRender = glm::inverse(renderFromCamera);
+
+    ViewResources view;
+    view.width = request.width;
+    view.height = request.height;
+    gpu::ViewData& data = view.data;
+    data.clipFromRender = mat4(clipFromView * viewFromRender);
+    data.renderFromClip = mat4(renderFromCamera * glm::inverse(clipFromView));
+    data.viewFromRender = mat4(viewFromRender);
+    data.cameraPosition = vec4(vec3(renderFromCamera[3]), parallel ? 0.0f : float(camera.znear));
+    data.cameraForward = vec4(-vec3(renderFromCamera[2]), float(request.sceneRadius));
+    data.size = vec4(float(request.width), float(request.height), 1.0f / float(request.width), 1.0f / float(request.height));
+    const dvec2 frame = quasirandom(request.frameIndex * 2u + 1u + request.seed * 104729u);
+    data.jitter = vec4(vec2(jitter), vec2(frame));
+    data.frameIndex = request.frameIndex;
+    data.seed = request.seed;
+    data.flags = (parallel ? gpu::kViewOrthographic : 0u) | (request.converge ? gpu::kViewConverge : 0u);
+    data.padding0 = 0;
+    return view;
+}
+
+std::array<vec4, 5> frustumPlanes(const gpu::ViewData& view) {
+    const mat4 rows = glm::transpose(view.clipFromRender);
+    std::array<vec4, 5> planes = {rows[3] + rows[0], rows[3] - rows[0], rows[3] + rows[1], rows[3] - rows[1], rows[3] - rows[2]};
+    for (vec4& plane : planes) plane /= std::max(glm::length(vec3(plane)), 1e-30f);
+    return planes;
+}
+
+} // namespace tyndall
