@@ -1,0 +1,11 @@
+# Libraries that a registry must refuse, each for its own reason.
+foreach(fault abi size nothing incomplete)
+  add_library(faulty_plugin_${fault} MODULE plugin_faulty.cpp)
+  target_compile_definitions(faulty_plugin_${fault} PRIVATE FAULT_${fault})
+  target_include_directories(faulty_plugin_${fault} PRIVATE ${CMAKE_SOURCE_DIR}/engine ${CMAKE_SOURCE_DIR}/shaders)
+  target_link_libraries(faulty_plugin_${fault} PRIVATE tyndall_warnings glm::glm)
+  set_target_properties(faulty_plugin_${fault} PROPERTIES PREFIX "" LIBRARY_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/tests/plugins)
+endforeach()
+tyndall_test(unit_plugin LABEL unit SOURCES plugin_registry_test.cpp DEPENDS Tyndall::plugin Tyndall::builtin_plugins)
+target_compile_definitions(unit_plugin PRIVATE FAULTY_PLUGINS="${CMAKE_BINARY_DIR}/tests/plugins" PLUGINS="${CMAKE_BINARY_DIR}/lib/plugins")
+add_dependencies(unit_plugin faulty_plugin_abi faulty_plugin_size faulty_plugin_nothing faulty_plugin_incomplete tyndall_plugin_example_tint_shared)
