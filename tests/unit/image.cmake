@@ -1,2 +1,3 @@
-tyndall_test(unit_image LABEL unit SOURCES image_exr_test.cpp image_hdr_test.cpp image_file_test.cpp
+tyndall_test(unit_image LABEL unit
+  SOURCES image_exr_test.cpp image_hdr_test.cpp image_file_test.cpp image_metrics_test.cpp image_report_test.cpp
   DEPENDS Tyndall::core fmt::fmt)
