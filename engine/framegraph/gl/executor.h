@@ -31,6 +31,7 @@ namespace tyndall::gl {
 class Buffer;
 class ShaderLibrary;
 class Texture;
+struct SamplerSpec;
 } // namespace tyndall::gl
 
 namespace tyndall::fg {
@@ -121,6 +122,8 @@ public:
 
     // Static things: immutable in the eyes of the graph. Ids are never reused.
     StaticTexture registerTexture(std::string_view name, gl::Texture&& texture);
+    /// As above, read through this sampler wherever it is bound (without one: bilinear on level 0, clamped).
+    StaticTexture registerTexture(std::string_view name, gl::Texture&& texture, const gl::SamplerSpec& sampler);
     StaticBuffer registerBuffer(std::string_view name, gl::Buffer&& buffer);
     StaticGeometry registerGeometry(std::string_view name, const GeometryDesc& desc);
     void release(StaticTexture texture);
