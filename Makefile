@@ -1,0 +1,41 @@
+# Two commands do everything on a fresh Debian 12, as root or with sudo: `make demo` and `make test`.
+# Presets for daily work (dev, asan-ubsan, tsan) are in CMakePresets.json; see CONTRIBUTING.md.
+
+BUILD := build/release
+JOBS ?= $(shell nproc)
+# Further settings for CMake, such as -DTYNDALL_WERROR=ON.
+CMAKE_FLAGS ?=
+# Further arguments for CTest, such as -R Exr or -L unit.
+TEST_FLAGS ?=
+
+.DEFAULT_GOAL := help
+.PHONY: help setup build demo test test-slow package clean
+
+help: ## say what there is to do
+	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "make %-10s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
+
+setup: ## install the Debian packages that are missing (root or sudo)
+	@cmake/install-packages.sh
+
+build: setup ## build everything, optimised, into build/release
+	@cmake --preset release $(CMAKE_FLAGS)
+	@cmake --build $(BUILD) --parallel $(JOBS)
+
+demo: build ## render the demo scene, without a display, to out/demo.png
+	@mkdir -p out
+	@$(BUILD)/bin/tyndall capture content/demo.scene.json -o out/demo.png --report out/demo.json
+	@echo "The picture is $(CURDIR)/out/demo.png; what it took is in $(CURDIR)/out/demo.json."
+	@if [ -n "$$DISPLAY$$WAYLAND_DISPLAY" ]; then \
+	    echo "To look around in it: $(BUILD)/bin/tyndall-editor content/demo.scene.json"; fi
+
+test: build ## build and run all tests but the slow ones
+	@ctest --test-dir $(BUILD) --label-exclude slow --parallel 2 --output-on-failure $(TEST_FLAGS)
+
+test-slow: build ## run the slow tests: every file of the shared content, long sweeps
+	@ctest --test-dir $(BUILD) --label-regex slow --parallel 2 --output-on-failure $(TEST_FLAGS)
+
+package: build ## make dist/tyndall-VERSION-linux-x86_64.tar.gz, which runs from any folder
+	@cmake/package.sh $(BUILD) dist
+
+clean: ## remove build/release, out and dist
+	@rm -rf $(BUILD) out dist
