@@ -1,6 +1,7 @@
 // Lights as shaders see them: storage buffer `Lights`, one struct a light; environment samples are directional lights here.
 #ifndef TYNDALL_SHARED_LIGHT_H
 #define TYNDALL_SHARED_LIGHT_H
+#include "shared/shadow.h"
 #include "shared/types.h"
 TYNDALL_SHARED_BEGIN
 
@@ -14,7 +15,8 @@ TYNDALL_CONST uint kLightFromEnvironment = 1u; // its specular part comes from t
 struct LightData {
     vec4 position;      // render space: point, spot, rect (centre); w: range in metres, 0 unbounded
     vec4 direction;     // unit, the way the light travels (the node's -Z); w: sphere radius (m) or angular radius (rad)
-    vec4 intensity;     // candela (point, spot), lux (directional), nits (rect); w: area of a rect in m²
+    vec4 intensity;     // candela (point, spot), lux (directional), nits (rect); w: rect: area in m²; point, spot: distances
+                        // below this one (m) count as this one, so that nothing is infinite
     vec4 axisX;         // rect: half extent vector along the node's X; w: cos(inner cone)
     vec4 axisY;         // rect: half extent vector along the node's Y; w: cos(outer cone)
     vec4 samplePoint;   // converge: this frame's point on the light (position, or for directional: direction it travels); w: 1 where set
@@ -22,18 +24,6 @@ struct LightData {
     uint flags;
     int shadowIndex;    // first entry of this light in `ShadowViews`, -1: casts no shadow
     int opticalDepthIndex; // entry of this light in `OpticalDepthViews`, -1: no grid medium attenuates it
-};
-
-/// One shadow map view: storage buffer `ShadowViews`. A directional light has one per cascade, a point light six.
-struct ShadowView {
-    mat4 shadowFromRender; // to [0,1]³ after division: texture coordinate and depth, 0 at the light
-    vec4 atlas;            // scale x, y and offset x, y of its square in the shadow atlas layer
-    vec4 bias;             // x: size of a texel in metres at distance 1 (perspective) or anywhere (parallel); y: 1 if perspective;
-                           // z: depth range in metres; w: cascade's far distance
-    int layer;             // of the shadow atlas array
-    int count;             // views of this light from this one on
-    int padding0;
-    int padding1;
 };
 
 TYNDALL_SHARED_END

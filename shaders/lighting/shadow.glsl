@@ -1,0 +1,237 @@
+// Shadows: how much of a light a point sees past the surfaces.
+//
+// Three ways, chosen by the view's flags and the light:
+// - averaged frames (kViewConverge): one hard lookup. The map was drawn from this frame's point on the light with this frame's
+//   offset of its texel grid, so the average over frames is the light's true, soft, anti-aliased shadow;
+// - a light without size: a small kernel of bilinear comparisons;
+// - a light with size: what stands in the way is looked for first, and its distance sets the width of the penumbra
+//   (after Fernando, "Percentage-Closer Soft Shadows", 2005).
+//
+// Bias. A point on a surface is compared, at every texel, with the depth that its own tangent plane has at that texel's
+// centre: on a plane that is exact, whatever the tilt, so only a small part of a texel is left as bias and shadows touch
+// what casts them. All biases are measured in texels at the point's distance, so the picture does not depend on the scene's scale.
+// A point in a medium has no plane: it counts as lit where it is one and a half texels before what the map holds (light
+// must not leak through walls), except in averaged frames, where no bias is the unbiased choice.
+#ifndef TYNDALL_LIGHTING_SHADOW_GLSL
+#define TYNDALL_LIGHTING_SHADOW_GLSL
+#include "common/view.glsl"
+#include "lighting/light.glsl"
+#include "shared/shadow.h"
+
+layout(std430) readonly buffer ShadowViews { ShadowView shadowViews[]; };
+uniform sampler2DArray shadowAtlas;
+
+const float kSurfaceBiasTexels = 0.2;   // what rounding and facets need, on top of the tangent plane
+const float kSurfaceBiasOfSlope = 0.1;  // of the depth that the plane spans within a texel: vertices snap to a fraction of a texel
+const float kSteepestSlope = 24.0;      // depth over width; beyond it hardly any light arrives, and planes seen edge-on explode
+const float kMediumBiasTexels = 1.5;
+const float kSmallKernelTexels = 1.25;  // radius of the kernel for lights without size
+const float kNearestBlocker = 0.25;     // casters are looked for beyond this part of the way from the light to the point
+
+/// A point as one view of the atlas sees it.
+struct ShadowPoint {
+    ivec2 corner;
+    int side;
+    int layer;
+    vec2 texel;      // continuous, texel centres at +0.5
+    float depth;
+    vec2 gradient;   // of the tangent plane's depth, per texel
+    float oneTexel;  // depth change of moving a texel's width along the light
+    float perspective;
+    float range;     // or near distance
+    float texelSize; // see ShadowView.bias.x
+};
+
+float shadowDistance(float depth, float perspective, float range) {
+    return perspective > 0.0 ? range / max(depth, 1e-30) : (1.0 - depth) * range;
+}
+
+/// The view of `light` that holds `position`, or -1 where no view does: nothing can stand between it and the light.
+int shadowViewOf(LightData light, vec3 position) {
+    int first = light.shadowIndex;
+    int count = shadowViews[first].count;
+    if (light.type == kLightDirectional) {
+        for (int i = 0; i < count; ++i) {
+            vec3 t = (shadowViews[first + i].shadowFromRender * vec4(position, 1.0)).xyz;
+            float border = shadowViews[first + i].bias.w / shadowViews[first + i].atlas.z;
+            if (all(greaterThanEqual(t.xy, vec2(border))) && all(lessThanEqual(t.xy, vec2(1.0 - border)))) return first + i;
+        }
+        return -1;
+    }
+    if (count == 1) return first;
+    vec3 d = position - (light.samplePoint.w > 0.0 ? light.samplePoint.xyz : light.position.xyz);
+    vec3 a = abs(d);
+    int axis = a.x >= a.y && a.x >= a.z ? 0 : (a.y >= a.z ? 1 : 2);
+    return first + 2 * axis + (d[axis] < 0.0 ? 1 : 0);
+}
+
+/// False where the view cannot hold the point: behind a spot, outside of its cone, in a direction that gets no light.
+bool shadowProject(int index, vec3 position, out ShadowPoint point) {
+    ShadowView v = shadowViews[index];
+    vec4 t = v.shadowFromRender * vec4(position, 1.0);
+    point = ShadowPoint(ivec2(v.atlas.xy), int(v.atlas.z), v.layer, vec2(0.0), 0.0, vec2(0.0), 0.0, v.bias.y, v.bias.z, v.bias.x);
+    if (v.atlas.z <= 0.0 || t.w <= 0.0) return false;
+    t.xyz /= t.w;
+    if (any(lessThan(t.xy, vec2(0.0))) || any(greaterThan(t.xy, vec2(1.0)))) return false;
+    point.texel = t.xy * v.atlas.z;
+    point.depth = t.z;
+    // Perspective: depth = near/distance, and a texel is bias.x·distance wide, so a texel's width changes depth by bias.x·depth.
+    point.oneTexel = v.bias.y > 0.0 ? v.bias.x * t.z : v.bias.x / v.bias.z;
+    return true;
+}
+
+/// Depth gradient of the plane through `position` with this normal: a plane's depth is affine over the view's texels,
+/// perspective or not. Solved from two directions that span the plane.
+void shadowPlane(int index, vec3 position, vec3 normal, inout ShadowPoint point) {
+    mat4 m = shadowViews[index].shadowFromRender;
+    vec3 tangent = normalize(abs(normal.y) < 0.9 ? cross(normal, vec3(0, 1, 0)) : cross(normal, vec3(1, 0, 0)));
+    vec4 c = m * vec4(position, 1.0);
+    vec4 a = m * vec4(tangent, 0.0);
+    vec4 b = m * vec4(cross(normal, tangent), 0.0);
+    // Derivatives of (x, y, z)/w along both, times w.
+    vec3 da = a.xyz - (c.xyz / c.w) * a.w;
+    vec3 db = b.xyz - (c.xyz / c.w) * b.w;
+    float determinant = da.x * db.y - da.y * db.x;
+    vec2 gradient = vec2(da.z * db.y - db.z * da.y, db.z * da.x - da.z * db.x);
+    float limit = kSteepestSlope * point.oneTexel;
+    gradient /= float(point.side);
+    float steepness = length(gradient);
+    // Compared before the division: a plane seen edge-on has determinant 0.
+    if (steepness > limit * abs(determinant)) gradient *= limit / max(steepness, 1e-37) * (determinant < 0.0 ? -1.0 : 1.0);
+    else gradient /= determinant;
+    point.gradient = steepness > 0.0 ? gradient : vec2(0.0);
+}
+
+float shadowFetch(ShadowPoint point, ivec2 texel) {
+    texel = clamp(texel, ivec2(0), ivec2(point.side - 1));
+    return texelFetch(shadowAtlas, ivec3(point.corner + texel, point.layer), 0).r;
+}
+
+/// 1 where the map holds nothing nearer to the light than the plane at that texel.
+float shadowCompare(ShadowPoint point, ivec2 texel, float bias) {
+    float held = shadowFetch(point, texel);
+    float own = point.depth + dot(point.gradient, vec2(texel) + 0.5 - point.texel) + bias;
+    return held <= 0.0 || own >= held ? 1.0 : 0.0;
+}
+
+float shadowBilinear(ShadowPoint point, vec2 at, float bias) {
+    vec2 corner = floor(at - 0.5);
+    vec2 f = at - 0.5 - corner;
+    ivec2 t = ivec2(corner);
+    float low = mix(shadowCompare(point, t, bias), shadowCompare(point, t + ivec2(1, 0), bias), f.x);
+    float high = mix(shadowCompare(point, t + ivec2(0, 1), bias), shadowCompare(point, t + ivec2(1, 1), bias), f.x);
+    return mix(low, high, f.y);
+}
+
+/// Point i of n, spread evenly over the unit disc (Vogel's spiral), turned by `turn` (0..1).
+vec2 shadowDisc(int i, int n, float turn) {
+    float radius = sqrt((float(i) + 0.5) / float(n));
+    float angle = 2.39996323 * float(i) + 6.28318531 * turn;
+    return radius * vec2(cos(angle), sin(angle));
+}
+
+float shadowSurfaceBias(ShadowPoint point) {
+    return kSurfaceBiasTexels * point.oneTexel + kSurfaceBiasOfSlope * (abs(point.gradient.x) + abs(point.gradient.y));
+}
+
+/// Two vectors from the light's centre that span it as `position` sees it: metres, for directional lights metres per metre.
+/// `square`: the light is the parallelogram between ±both, else the ellipse inside.
+void shadowLightExtent(LightData light, vec3 position, out vec3 x, out vec3 y, out bool square) {
+    square = light.type == kLightRect;
+    if (square) {
+        x = light.axisX.xyz;
+        y = light.axisY.xyz;
+        return;
+    }
+    vec3 axis = light.type == kLightDirectional ? light.direction.xyz : position - light.position.xyz;
+    float size = light.type == kLightDirectional ? tan(light.direction.w) : light.direction.w;
+    vec3 side = abs(axis.y) < 0.9 * length(axis) ? cross(axis, vec3(0, 1, 0)) : cross(axis, vec3(1, 0, 0));
+    x = size * side / max(length(side), 1e-30);
+    y = cross(axis, x) / max(length(axis), 1e-30);
+}
+
+/// Where the segment from `position` to the point `onLight` (relative to the light's centre) is, `part` (0..1) of the way
+/// from the light; seen from the light's centre that is where a caster of this point's shadow would be drawn.
+vec3 shadowOnWay(LightData light, vec3 position, vec3 onLight, float part, float reach) {
+    if (light.type == kLightDirectional) return position + (onLight - light.direction.xyz) * ((1.0 - part) * reach);
+    return mix(light.position.xyz + onLight, position, part);
+}
+
+/// `at` moved along its ray from the light onto the plane through `position`; without a plane, to the same distance.
+vec3 shadowOntoPlane(LightData light, vec3 at, vec3 position, vec3 normal, bool hasPlane) {
+    bool parallel = light.type == kLightDirectional;
+    vec3 ray = parallel ? light.direction.xyz : at - light.position.xyz;
+    vec3 plane = hasPlane ? normal : (parallel ? light.direction.xyz : normalize(position - light.position.xyz));
+    float along = dot(ray, plane);
+    if (abs(along) <= length(ray) / kSteepestSlope) return parallel ? at : light.position.xyz + normalize(ray) * distance(position, light.position.xyz);
+    return at + ray * (dot(position - at, plane) / along);
+}
+
+float shadowSoft(LightData light, ShadowPoint centre, vec3 position, vec3 normal, bool hasPlane, int taps, int searchTaps, vec2 u) {
+    vec3 x, y;
+    bool square;
+    shadowLightExtent(light, position, x, y, square);
+    float reach = shadowDistance(centre.depth, centre.perspective, centre.range);
+    float sum = 0.0;
+    float found = 0.0;
+    float part = kNearestBlocker;
+    // The first round looks for casters anywhere on the way, the second looks along the ways past them.
+    for (int round = 0; round < 2; ++round) {
+        int n = round == 0 ? searchTaps : taps;
+        float lit = 0.0;
+        for (int i = 0; i < n; ++i) {
+            vec2 disc = square ? 2.0 * fract(u + float(i + 1) * vec2(0.75487767, 0.56984029)) - 1.0 : shadowDisc(i, n, round == 0 ? u.x : u.y);
+            vec3 at = shadowOnWay(light, position, x * disc.x + y * disc.y, part, reach);
+            vec3 onPlane = shadowOntoPlane(light, at, position, normal, hasPlane);
+            int index = shadowViewOf(light, onPlane);
+            ShadowPoint point;
+            if (index < 0 || !shadowProject(index, onPlane, point)) {
+                lit += 1.0;
+                continue;
+            }
+            // Half a texel of the plane's slope: the lookup is at the texel's centre, not at the point.
+            float slope = 0.0;
+            if (hasPlane) {
+                vec3 ray = light.type == kLightDirectional ? light.direction.xyz : normalize(onPlane - light.position.xyz);
+                float cosine = max(abs(dot(ray, normal)), 1.0 / kSteepestSlope);
+                slope = sqrt(max(0.0, 1.0 - cosine * cosine)) / cosine;
+            }
+            float bias = point.oneTexel * (hasPlane ? kSurfaceBiasTexels + 0.75 * slope : -kMediumBiasTexels);
+            float held = shadowFetch(point, ivec2(point.texel));
+            if (held <= 0.0 || point.depth + bias >= held) {
+                lit += 1.0;
+            } else if (round == 0) {
+                sum += shadowDistance(held, point.perspective, point.range) / max(shadowDistance(point.depth, point.perspective, point.range), 1e-30);
+                found += 1.0;
+            }
+        }
+        if (round == 1) return lit / float(n);
+        if (found == 0.0) return 1.0;
+        part = clamp(sum / found, 0.05, 1.0);
+    }
+    return 1.0;
+}
+
+/// 0..1: the part of `light` that `position` (render space) sees past opaque surfaces. `offsetNormal`: the geometric normal of
+/// the surface that the point lies on, unit, either side; vec3(0) for points in media. `u` (0..1) turns the filter.
+float shadowVisibility(uint light, vec3 position, vec3 offsetNormal, vec2 u) {
+    LightData data = lights[light];
+    if (data.shadowIndex < 0) return 1.0;
+    int index = shadowViewOf(data, position);
+    ShadowPoint point;
+    if (index < 0 || !shadowProject(index, position, point)) return 1.0;
+    bool onSurface = dot(offsetNormal, offsetNormal) > 0.0;
+    if (onSurface) shadowPlane(index, position, offsetNormal, point);
+    if ((view.flags & kViewConverge) != 0u)
+        return shadowCompare(point, ivec2(floor(point.texel)), onSurface ? shadowSurfaceBias(point) : 0.0);
+    int taps = shadowViews[index].taps;
+    int searchTaps = shadowViews[index].searchTaps;
+    if (searchTaps > 0) return shadowSoft(data, point, position, offsetNormal, onSurface, taps, searchTaps, u);
+    if (!onSurface) return shadowBilinear(point, point.texel, -kMediumBiasTexels * point.oneTexel);
+    float lit = 0.0;
+    for (int i = 0; i < taps; ++i)
+        lit += shadowBilinear(point, point.texel + (taps > 1 ? kSmallKernelTexels * shadowDisc(i, taps, u.x) : vec2(0.0)), shadowSurfaceBias(point));
+    return lit / float(taps);
+}
+
+#endif
