@@ -16,6 +16,7 @@ namespace tyndall {
 
 inline constexpr int kBrickCells = 8;
 inline constexpr int kBrickSamples = 9;
+inline constexpr int kBrickSampleCount = kBrickSamples * kBrickSamples * kBrickSamples;
 
 /// One brick. minimum == maximum: constant, and no samples are stored (slot == kNoSlot).
 struct Brick {
@@ -33,7 +34,7 @@ struct BrickGrid {
     dmat4 worldFromIndex{1.0}; // the file's transform, any affine one ("world" is the medium's node space)
     float minimum = 0, maximum = 0;
 
-    [[nodiscard]] uint32_t slotCount() const { return uint32_t(samples.size() / (9 * 9 * 9)); }
+    [[nodiscard]] uint32_t slotCount() const { return uint32_t(samples.size() / kBrickSampleCount); }
     [[nodiscard]] const Brick& brick(ivec3 b) const {
         return bricks[(size_t(b.z) * size_t(brickCount.y) + size_t(b.y)) * size_t(brickCount.x) + size_t(b.x)];
     }
@@ -44,7 +45,8 @@ struct BrickGrid {
 };
 
 /// Builds bricks from dense voxels (x fastest), `first` being the index of the first one.
-/// Bricks whose samples are all equal store nothing; leading and trailing empty bricks are trimmed.
+/// Bricks whose samples are all equal store nothing; leading and trailing empty voxels are trimmed.
+/// CHECKs: one value a voxel; all finite, not negative, at most kMaximumVoxel (grid_import.h).
 BrickGrid makeBrickGrid(const std::vector<float>& voxels, ivec3 first, ivec3 size, const dmat4& worldFromIndex);
 
 } // namespace tyndall
