@@ -49,6 +49,7 @@ struct FrameRequest {
     uint32_t seed = 0;
     bool converge = false;               // average this frame with those since the last change of request or scene
     bool restart = false;                // forget the average
+    bool separateTerms = false;          // keep an image a term for readTerms(), averaged too
     std::string inspect;                 // name of a resource to show instead of the picture ("shadow.atlas"), see InspectSettings
 };
 
