@@ -67,12 +67,13 @@ struct CompiledResource {
     ResourceOrigin origin = ResourceOrigin::Transient;
     bool isOutput = false;
     bool used = false;             // a pass that runs touches it, or its content is kept
+    bool written = false;          // by a pass that runs
     bool clearFirst = false;       // must hold zeros when it gets its storage: its creator was skipped, a later pass writes
     uint32_t firstPass = kNoIndex; // first and last pass that runs and uses it
     uint32_t lastPass = kNoIndex;
     uint32_t slot = kNoIndex;      // Transient: storage, shared by resources with one description and disjoint lifetimes
-    uint32_t persistent = kNoIndex; // index into PersistentTable for Kept, Persistent and the two halves of a history
-    uint32_t aliasOf = kNoIndex;   // HistoryCurrent that nobody writes in this frame: reads as its HistoryPrevious
+    uint32_t persistent = kNoIndex; // Kept, Persistent, History…: storage index of the PersistentTable
+    uint32_t aliasOf = kNoIndex;   // HistoryCurrent that no pass writes in this frame: index of its HistoryPrevious
     uint32_t staticId = 0;         // Imported
     uint64_t finalContent = 0;     // identifies its content at the end of the frame
 };
