@@ -32,10 +32,15 @@ struct LightResources {
 };
 
 struct MediaResources {
-    fg::BufferHandle media;   // MediumData[]
-    fg::BufferHandle bricks;  // BrickData[]
-    fg::StaticTexture atlas;  // R32F 3D: brick samples of density and temperature grids
-    uint32_t count = 0;       // media that can be seen or can shade what is seen
+    fg::BufferHandle media;     // MediaHeader, then MediumData[]
+    fg::BufferHandle bricks;    // BrickData[] of all grids
+    fg::BufferHandle blackbody; // radiance by temperature
+    fg::StaticTexture atlas;    // R32F 3D: brick samples of density and temperature grids
+    fg::BufferHandle opticalDepthViews; // OpticalDepthView[], by light
+    fg::TextureHandle opticalDepth;     // light-space optical depth of the grids; null where no light has a volume
+    fg::StaticTexture noOpticalDepth;   // bound in its place then
+    uint32_t count = 0;            // media that can be seen or can shade what is seen; 0: bind nothing, include nothing
+    uint32_t phaseGroupCount = 0;  // different phase functions among them
 };
 
 struct ViewResources {
@@ -46,6 +51,27 @@ struct ViewResources {
 template <typename Command>
 Command& bindView(Command& command, const ViewResources& view) {
     return command.params(view.data, "View");
+}
+
+/// Declares that a pass reads the media: whoever includes shaders/media/density.glsl, optical_depth.glsl or march.glsl. Only
+/// where `media.count` > 0. Keep what it returns in the pass's data, for bindMedia().
+inline MediaResources readMedia(fg::Builder& builder, const MediaResources& media) {
+    MediaResources read = media;
+    read.media = builder.read(media.media);
+    read.bricks = builder.read(media.bricks);
+    read.blackbody = builder.read(media.blackbody);
+    read.opticalDepthViews = builder.read(media.opticalDepthViews);
+    if (media.opticalDepth) read.opticalDepth = builder.read(media.opticalDepth);
+    return read;
+}
+
+/// Binds everything that the media's shaders name. `media` comes from readMedia(). Names that a shader does not use are ignored.
+template <typename Command>
+Command& bindMedia(Command& command, const MediaResources& media) {
+    command.bind("Media", media.media).bind("Bricks", media.bricks).bind("Blackbody", media.blackbody)
+        .bind("OpticalDepthViews", media.opticalDepthViews).bind("mediumAtlas", media.atlas);
+    if (media.opticalDepth) return command.bind("lightOpticalDepth", media.opticalDepth);
+    return command.bind("lightOpticalDepth", media.noOpticalDepth);
 }
 
 } // namespace tyndall

@@ -1,5 +1,5 @@
-// Media as shaders see them: storage buffer `Media`. Grids lie in bricks of 9³ samples in one 3D texture (see
-// engine/media/brick_grid.h); `Bricks` holds the brick tables of all grids one after another.
+// Media as shaders see them: storage buffer `Media` (a header, then one struct a medium). Grids lie in bricks of 9³
+// samples in one 3D texture (see engine/media/brick_grid.h); `Bricks` holds the brick tables of all grids one after another.
 #ifndef TYNDALL_SHARED_MEDIUM_H
 #define TYNDALL_SHARED_MEDIUM_H
 #include "shared/types.h"
@@ -17,26 +17,43 @@ TYNDALL_CONST uint kPhaseCornetteShanks = 2u;
 
 TYNDALL_CONST uint kNoSlot = 0xffffffffu;
 
+TYNDALL_CONST uint kMaxPhaseGroups = 8u; // different phase functions that a ray's media may have
+
+// MediaHeader.flags
+TYNDALL_CONST uint kMediaExact = 1u;            // integrate grids cell by cell instead of by steps
+TYNDALL_CONST uint kMediaLightDepthVolume = 2u; // grids' optical depth towards lights comes from the light-space volume
+
+struct MediaHeader {
+    vec4 phases[8];          // of each phase group; x: the kind as a number, y: g
+    uint mediumCount;
+    uint gridCount;          // the grids are the last ones
+    uint phaseGroupCount;
+    uint flags;
+    float stepVoxels;        // length of a step through a grid, in voxels
+    uint analyticSteps;      // steps through a medium without a grid
+    float minTransmittance;  // where a march ends
+    uint padding0;
+};
+
 struct MediumData {
-    mat4 localFromRender;       // box: the unit cube [-½,½]³; sphere: the unit ball; height: y in world metres above the origin; grid: voxel index
-    mat4 temperatureFromRender; // grid with temperature: its voxel index
+    mat4 localFromRender;       // box: the unit cube [-½,½]³; sphere: the unit ball; height: y in world metres above the origin;
+                                // grid: cells from the corner of its first brick (voxel index - lowest index)
+    mat4 temperatureFromRender; // grid with temperature: the same for its temperature grid
     vec4 scattering;            // per metre; w: g
     vec4 extinction;            // per metre; w: scale height in metres
     vec4 emission;              // nits per metre; w: scale of the blackbody emission, 0: none
-    ivec4 gridOrigin;           // index of the lowest voxel; w: first brick in `Bricks`
-    ivec4 gridBricks;           // bricks along each axis; w unused
-    ivec4 temperatureOrigin;
-    ivec4 temperatureBricks;
+    ivec4 gridBricks;           // bricks along each axis; w: first brick in `Bricks`
+    ivec4 temperatureBricks;    // the same for the temperature grid
     uint kind;
     uint phase;
-    float densityMaximum;       // of the grid; 1 for the others
+    uint phaseGroup;
     float voxelSize;            // smallest edge of a voxel, metres; 0 for the others
 };
 
 struct BrickData {
     float minimum;
     float maximum;
-    uint slot;                  // kNoSlot: constant
+    uint slot;                  // place in the atlas, in bricks: x | y << 10 | z << 20; kNoSlot: constant
     uint padding0;
 };
 

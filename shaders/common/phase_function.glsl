@@ -1,0 +1,31 @@
+// Phase functions: per steradian, integrating to 1 over the sphere. The cosine is between the directions of
+// propagation before and after: the forward peak is at +1.
+#ifndef TYNDALL_COMMON_PHASE_FUNCTION
+#define TYNDALL_COMMON_PHASE_FUNCTION
+#include "common/math.glsl"
+#include "shared/medium.h"
+
+/// Henyey-Greenstein. The denominator (1-g)² + 2g(1-cos) has no cancellation at a sharp peak of either sign.
+float henyeyGreenstein(float g, float cosTheta) {
+    float s = abs(g);
+    float c = g < 0.0 ? -cosTheta : cosTheta;
+    float d = (1.0 - s) * (1.0 - s) + 2.0 * s * max(1.0 - c, 0.0);
+    return (1.0 - s) * (1.0 + s) / (4.0 * kPi * d * sqrt(d));
+}
+
+float rayleigh(float cosTheta) {
+    return 3.0 / (16.0 * kPi) * (1.0 + cosTheta * cosTheta);
+}
+
+/// Cornette-Shanks (1992): Henyey-Greenstein times (1 + cos²), renormalised; Rayleigh's function at g = 0.
+float cornetteShanks(float g, float cosTheta) {
+    return henyeyGreenstein(g, cosTheta) * 1.5 * (1.0 + cosTheta * cosTheta) / (2.0 + g * g);
+}
+
+float phaseFunction(uint kind, float g, float cosTheta) {
+    if (kind == kPhaseRayleigh) return rayleigh(cosTheta);
+    if (kind == kPhaseCornetteShanks) return cornetteShanks(g, cosTheta);
+    return henyeyGreenstein(g, cosTheta);
+}
+
+#endif

@@ -1,0 +1,218 @@
+// The march: along a ray, through all media at once, up to a distance. Segments end where a medium begins or ends, at the
+// borders of bricks, and after the steps that the settings ask for. Inside a segment everything is a closed form: the
+// light that a constant source sends is the same for any number of steps, from optical depth 0 to opaque.
+//
+// Single scattering takes one point a segment and light. Close to a local light it is chosen evenly in angle as seen from the
+// light (Kulla and Fajardo 2012, "Importance Sampling Techniques for Path Tracing in Participating Media", section 4), so
+// that the inverse square cancels; elsewhere evenly in what the segment scatters. Both are unbiased.
+//
+// Before including this, a shader may define MARCH_PHASE_GROUPS (1 to 8: at least MediaHeader.phaseGroupCount), and
+// MARCH_OCTAVES to replace single scattering by the octaves of `marchOctaves`.
+#ifndef TYNDALL_MEDIA_MARCH
+#define TYNDALL_MEDIA_MARCH
+#include "common/phase_function.glsl"
+#include "common/random.glsl"
+#include "common/view.glsl"
+#include "lighting/light.glsl"
+#include "lighting/shadow.glsl"
+#include "media/march_segment.glsl"
+#include "shared/march.h"
+
+#ifdef MARCH_OCTAVES
+/// Multiple scattering by octaves (Wrenninge, Kulla and Lundqvist 2013, "Oz: The Great and Volumetric"): octave i lets light
+/// through extinction·extinctionFactor^i, scatters scattering·scatteringFactor^i of it, with g·phaseFactor^i.
+struct MarchOctaves {
+    uint first;
+    uint last; // inclusive
+    float scatteringFactor;
+    float extinctionFactor;
+    float phaseFactor;
+};
+MarchOctaves marchOctaves;
+#endif
+
+struct MarchResult {
+    vec3 opticalDepth; // of the whole way
+    vec3 inScatter;    // nits that single scattering (or the octaves) sends back along the ray
+    vec3 emission;     // nits that the media's own emission sends back along the ray
+};
+
+const int kMostSegments = 16384; // ends a march whose coordinates have lost their meaning
+
+// ---- where in a segment light is gathered ----------------------------------------------------------------------
+
+/// A point of a segment, as the fraction of its length, and the segment's scattered light per scattering coefficient
+/// times length and per light at that point.
+struct GatherPoint {
+    float fraction;
+    vec3 weight;
+};
+
+/// Extinction is taken to change linearly over the segment, between the values at its ends.
+/// Fraction of the segment's optical depth before `x`.
+float depthFraction(Segment s, float x) {
+    float sum = s.extinctionStart + s.extinctionEnd;
+    if (sum <= 0.0) return x;
+    return x * (2.0 * s.extinctionStart + (s.extinctionEnd - s.extinctionStart) * x) / sum;
+}
+
+/// The inverse: where the fraction `f` of the optical depth lies before.
+float fractionAtDepth(Segment s, float f) {
+    float a = s.extinctionStart;
+    float b = s.extinctionEnd;
+    if (a + b <= 0.0) return f;
+    // Scaled, because squares of large coefficients overflow.
+    float scale = 1.0 / max(a, b);
+    a *= scale;
+    b *= scale;
+    float root = sqrt(max(a * a + f * (b * b - a * a), 0.0));
+    return clamp(f * (a + b) / max(a + root, 1e-20), 0.0, 1.0);
+}
+
+/// Evenly in scattered light, as for a light that is the same all along the segment: then the weight is the closed form, and
+/// exact. With coloured extinction, averaged frames sample each channel's own distribution, which is unbiased for
+/// any light; a single frame keeps the closed form, which has no noise.
+GatherPoint gatherBySegment(Segment s, float u) {
+    bool coloured = maximumOf(s.depth) - minimumOf(s.depth) > 1e-3 * maximumOf(s.depth);
+    if (!coloured || !viewConverges()) {
+        float x = truncatedExponential(meanOf(s.depth), u);
+        return GatherPoint(fractionAtDepth(s, x), oneMinusExpOverX(s.depth));
+    }
+    float channel = min(floor(3.0 * u), 2.0);
+    float tau = channel < 1.0 ? s.depth.r : (channel < 2.0 ? s.depth.g : s.depth.b);
+    float x = truncatedExponential(tau, 3.0 * u - channel);
+    vec3 density = exp(-s.depth * x);
+    return GatherPoint(fractionAtDepth(s, x), density / max(meanOf(density / oneMinusExpOverX(s.depth)), 1e-30));
+}
+
+/// Evenly in angle from a light that is `height` away from the ray and abreast of the ray's parameter start - from.
+/// `from`, `to`: the segment's ends, measured from that parameter.
+GatherPoint gatherByAngle(Segment s, float height, float from, float to, float u) {
+    height = max(height, 1e-5 * (to - from));
+    float along = height * height + from * to;
+    float across = height * (to - from);
+    float angle = atan(across, along); // of the segment as the light sees it: no difference of two large angles
+    float c = cos(u * angle);
+    float sn = sin(u * angle);
+    float t = clamp(height * (from * c + height * sn) / max(height * c - from * sn, 1e-30), from, to);
+    float x = clamp((t - from) / (to - from), 0.0, 1.0);
+    // A narrow angle is its tangent: the quotient angle/height stays exact however far away the light is.
+    float anglePerHeight = across < 1e-3 * along ? (to - from) / along : angle / height;
+    float sum = s.extinctionStart + s.extinctionEnd;
+    float density = sum > 0.0 ? 2.0 * mix(s.extinctionStart, s.extinctionEnd, x) / sum : 1.0;
+    vec3 through = exp(-s.depth * depthFraction(s, x));
+    return GatherPoint(x, through * (density * anglePerHeight * (height * height + t * t) / (to - from)));
+}
+
+/// False where the light cannot reach the segment.
+bool chooseGatherPoint(uint light, Ray ray, Segment s, float u, out GatherPoint point) {
+    point = GatherPoint(0.0, vec3(0.0));
+    if (lights[light].type == kLightDirectional) {
+        point = gatherBySegment(s, u);
+        return true;
+    }
+    vec3 pivot = lights[light].samplePoint.w > 0.0 ? lights[light].samplePoint.xyz : lights[light].position.xyz;
+    float abreast = dot(pivot - ray.origin, ray.direction);
+    float height = length(pivot - ray.origin - ray.direction * abreast);
+    float from = s.start - abreast;
+    float to = from + s.size;
+    float nearest = from > 0.0 ? from : (to < 0.0 ? -to : 0.0);
+    float farthest = max(abs(from), abs(to));
+    float range = lights[light].position.w;
+    float extent = lights[light].type == kLightRect ? length(lights[light].axisX.xyz) + length(lights[light].axisY.xyz) : 0.0;
+    if (range > 0.0 && length(vec2(height, nearest)) > range + extent) return false;
+    // Which varies more along the segment: the light's inverse square or the transmittance?
+    float low = max(height * height + nearest * nearest, 1e-12 * farthest * farthest);
+    bool byAngle = log((height * height + farthest * farthest) / low) > meanOf(s.depth);
+    point = byAngle ? gatherByAngle(s, height, from, to, u) : gatherBySegment(s, u);
+    return true;
+}
+
+// ---- light scattered in a segment -------------------------------------------------------------------------------
+
+vec3 scatteredLight(Segment s, float cosTheta, vec3 depthToLight) {
+    vec3 sum = vec3(0.0);
+#ifdef MARCH_OCTAVES
+    for (uint i = marchOctaves.first; i <= marchOctaves.last; ++i) {
+        vec3 mixture = vec3(0.0);
+        for (uint g = 0u; g < min(mediaHeader.phaseGroupCount, uint(MARCH_PHASE_GROUPS)); ++g)
+            mixture += s.scattering[g] * phaseFunction(uint(mediaHeader.phases[g].x), mediaHeader.phases[g].y * pow(marchOctaves.phaseFactor, float(i)), cosTheta);
+        sum += mixture * pow(marchOctaves.scatteringFactor, float(i)) * exp(-depthToLight * pow(marchOctaves.extinctionFactor, float(i)));
+    }
+#elif MARCH_PHASE_GROUPS == 1
+    sum = s.scattering[0] * (phaseFunction(uint(mediaHeader.phases[0].x), mediaHeader.phases[0].y, cosTheta) * exp(-depthToLight));
+#else
+    for (uint g = 0u; g < min(mediaHeader.phaseGroupCount, uint(MARCH_PHASE_GROUPS)); ++g)
+        sum += s.scattering[g] * phaseFunction(uint(mediaHeader.phases[g].x), mediaHeader.phases[g].y, cosTheta);
+    sum *= exp(-depthToLight);
+#endif
+    return sum;
+}
+
+/// Light of one lamp that the segment scatters back along the ray, seen from the segment's start. `noise`: 0..1, along the
+/// segment and over the light's area.
+vec3 segmentLight(uint light, Ray ray, Segment s, vec3 noise) {
+    GatherPoint point;
+    if (!chooseGatherPoint(light, ray, s, noise.x, point)) return vec3(0.0);
+    vec3 position = ray.origin + ray.direction * (s.start + s.size * point.fraction);
+    LightSample arriving = sampleLight(light, position, noise.yz);
+    if (!(maximumOf(arriving.illuminance) > 0.0)) return vec3(0.0);
+    float visible = shadowVisibility(light, position, vec3(0.0), noise.yz);
+    if (visible <= 0.0) return vec3(0.0);
+    vec3 depth = opticalDepthToLight(light, position, arriving.direction, arriving.distance);
+    return point.weight * scatteredLight(s, dot(arriving.direction, ray.direction), depth) * arriving.illuminance * visible;
+}
+
+#ifndef MARCH_TILE_LIGHTS
+/// Lights that can reach the ray: here all of them. A shader with a list of its own defines MARCH_TILE_LIGHTS and both functions.
+uint marchLightSlots(uint lightCount) { return lightCount; }
+bool marchLight(uint slot, out uint light) {
+    light = slot;
+    return true;
+}
+#else
+uint marchLightSlots(uint lightCount);
+bool marchLight(uint slot, out uint light);
+#endif
+
+vec3 segmentInScatter(Ray ray, Segment s, uint lightCount, vec3 noise) {
+    vec3 sum = vec3(0.0);
+    uint slots = marchLightSlots(lightCount);
+    for (uint slot = 0u; slot < slots; ++slot) {
+        uint light;
+        if (marchLight(slot, light)) sum += segmentLight(light, ray, s, noise);
+    }
+    return sum;
+}
+
+// ---- the march --------------------------------------------------------------------------------------------------
+
+/// From ray.origin over `distance` metres (1e30: endless). `flags`: kMarchInScatter, kMarchEmission. `pixel` seeds the noise.
+MarchResult marchMedia(Ray ray, float distance, uint flags, uint lightCount, uvec2 pixel) {
+    MarchResult result = MarchResult(vec3(0.0), vec3(0.0), vec3(0.0));
+    float t;
+    float end;
+    if (!mediaExtent(ray, distance, t, end)) {
+        // Nothing to gather light from; what is out there may still absorb.
+        result.opticalDepth = opticalDepthAlong(ray.origin, ray.direction, distance);
+        return result;
+    }
+    vec3 noise = vec3(pixelNoise(pixel, 0u), pixelNoise2(pixel, 1u));
+    float opaque = -log(max(mediaHeader.minTransmittance, 1e-30));
+    for (int i = 0; i < kMostSegments && t < end && minimumOf(result.opticalDepth) < opaque; ++i) {
+        Segment s = marchSegment(ray, t, end);
+        t = s.start + s.size;
+        vec3 transmittance = exp(-result.opticalDepth);
+        if ((flags & kMarchInScatter) != 0u && s.scatters)
+            result.inScatter += transmittance * segmentInScatter(ray, s, lightCount, noise);
+        if ((flags & kMarchEmission) != 0u)
+            result.emission += transmittance * s.emission * oneMinusExpOverX(s.depth);
+        result.opticalDepth = min(result.opticalDepth + s.depth, vec3(kOpaque));
+        // Golden ratio and its generalisation to two dimensions: neighbouring segments differ as much as they can.
+        noise = fract(noise + vec3(0.61803399, 0.75487767, 0.56984029));
+    }
+    if (t < distance) result.opticalDepth = min(result.opticalDepth + opticalDepthBetween(ray.origin, ray.direction, t, distance), vec3(kOpaque));
+    return result;
+}
+
+#endif

@@ -1,0 +1,23 @@
+// Parameters of the passes that march through the media from the camera.
+#ifndef TYNDALL_SHARED_MARCH_H
+#define TYNDALL_SHARED_MARCH_H
+#include "shared/types.h"
+TYNDALL_SHARED_BEGIN
+
+TYNDALL_CONST uint kMarchInScatter = 1u; // light scattered once is wanted
+TYNDALL_CONST uint kMarchEmission = 2u;  // emission of the media is wanted
+TYNDALL_CONST uint kMarchRefine = 4u;    // upsampling marches again where no coarse sample fits
+
+struct MarchParams {
+    uint lightCount;
+    uint flags;
+    uint factor;            // full pixels per marched pixel along an axis: 1, 2, 4
+    float depthTolerance;   // upsampling: relative difference of distance that halves a weight
+    float transmittanceTolerance; // upsampling: difference of transmittance that halves a weight
+    float refineWeight;     // upsampling: below this best weight a pixel is marched again
+    uint padding0;
+    uint padding1;
+};
+
+TYNDALL_SHARED_END
+#endif
