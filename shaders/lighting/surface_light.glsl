@@ -1,0 +1,166 @@
+// Direct light on a point of a surface: every light that reaches it, shadowed, through the media, times the BRDF.
+//
+// The environment's light is split so that nothing is counted twice. Its directional lights (kLightFromEnvironment) give all
+// of the diffuse part, and the specular part of rough surfaces. The map gives the specular part of smooth surfaces, whose
+// lobes a few lights would show as spots; no shadow ray follows those directions, so what the lights saw
+// of the environment, weighted by how close they lie to the lobe, stands in for their visibility.
+//
+// MEDIA: 1 where media attenuate light. ENVIRONMENT: 1 where there is an environment map.
+#ifndef TYNDALL_LIGHTING_SURFACE_LIGHT
+#define TYNDALL_LIGHTING_SURFACE_LIGHT
+#include "common/random.glsl"
+#include "common/view.glsl"
+#include "lighting/brdf.glsl"
+#include "lighting/clusters.glsl"
+#include "lighting/light.glsl"
+#include "lighting/rect_irradiance.glsl"
+#include "lighting/shadow.glsl"
+#include "shared/deferred.h"
+#if ENVIRONMENT
+#include "lighting/environment.glsl"
+#endif
+#if MEDIA
+#include "media/optical_depth.glsl"
+#endif
+
+layout(std140) uniform Surfaces {
+    SurfaceLightParams surfaceLight;
+};
+
+struct LitPoint {
+    vec3 position;        // render space
+    vec3 normal;          // unit, shading
+    vec3 geometricNormal; // unit, towards the eye
+    vec3 toEye;           // unit
+    Brdf brdf;
+    float occlusion;
+    uvec2 pixel;
+};
+
+// What the environment's lights know about how much of the environment is seen.
+struct EnvironmentVisibility {
+    vec3 seen;    // sum of weight · visibility · transmittance
+    float weight;
+};
+
+const float kBlurAlpha = 0.25; // lobes narrower than this are widened where lights vote on the environment's visibility
+
+vec3 transmittanceToLight(uint light, vec3 position, LightSample incoming) {
+#if MEDIA
+    return exp(-opticalDepthToLight(light, position, incoming.direction, incoming.distance));
+#else
+    return vec3(1.0);
+#endif
+}
+
+// Light from a point, or from a disc or ball that acts as one.
+vec3 lightOfPoint(uint light, LitPoint point, vec2 u, float specularShare, float environmentLight, inout EnvironmentVisibility seen) {
+    LightSample incoming = sampleLight(light, point.position, u);
+    float cosine = dot(point.normal, incoming.direction);
+    // An opaque surface is not lit from the side that is not seen, whatever its shading normal says.
+    if (!(cosine > 0.0) || !(dot(point.geometricNormal, incoming.direction) > 0.0)) return vec3(0.0);
+    float power = max(incoming.illuminance.r, max(incoming.illuminance.g, incoming.illuminance.b));
+    if (!(power > 0.0)) return vec3(0.0);
+    vec3 arriving = vec3(shadowVisibility(light, point.position, point.geometricNormal, u));
+    if (arriving.r > 0.0) arriving *= transmittanceToLight(light, point.position, incoming);
+    BrdfValue value = evaluateBrdf(point.brdf, point.normal, point.toEye, incoming.direction);
+    if (environmentLight > 0.0) {
+        vec3 halfway = normalize(point.toEye + incoming.direction + 1e-4 * point.normal);
+        float vote = power * cosine * ggxDistribution(max(point.brdf.alpha, kBlurAlpha), point.normal, halfway);
+        seen.seen += vote * arriving;
+        seen.weight += vote;
+    }
+    return arriving * incoming.illuminance * cosine * (value.diffuse + specularShare * value.specular);
+}
+
+// A rectangle: irradiance in closed form, samples for the lobe and for how Fresnel and media weigh its parts.
+vec3 lightOfRect(uint light, LitPoint point, vec2 u) {
+    LightData data = lights[light];
+    float irradiance = rectIrradiance(data.position.xyz - point.position, data.axisX.xyz, data.axisY.xyz, data.direction.xyz, point.normal);
+    if (!(irradiance > 0.0)) return vec3(0.0);
+    float visibility = shadowVisibility(light, point.position, point.geometricNormal, u);
+    if (!(visibility > 0.0)) return vec3(0.0);
+    vec3 specular = vec3(0.0);
+    vec3 diffuseWeighted = vec3(0.0);
+    float weights = 0.0;
+    uint count = max(surfaceLight.rectSamples, 1u);
+    for (uint i = 0u; i < count; ++i) {
+        // The plastic-number sequence covers the rectangle evenly for every count.
+        vec2 at = fract(u + float(i) * vec2(0.7548776662, 0.5698402910));
+        LightSample incoming = sampleLight(light, point.position, at);
+        float cosine = dot(point.normal, incoming.direction);
+        if (!(cosine > 0.0) || !(dot(point.geometricNormal, incoming.direction) > 0.0)) continue;
+        BrdfValue value = evaluateBrdf(point.brdf, point.normal, point.toEye, incoming.direction);
+        vec3 transmittance = transmittanceToLight(light, point.position, incoming);
+        float weight = cosine * max(incoming.illuminance.r, max(incoming.illuminance.g, incoming.illuminance.b));
+        specular += transmittance * incoming.illuminance * cosine * value.specular;
+        diffuseWeighted += weight * transmittance * value.diffuse;
+        weights += weight;
+    }
+    vec3 diffuse = weights > 0.0 ? data.intensity.rgb * irradiance * (diffuseWeighted / weights) : vec3(0.0);
+    return visibility * (diffuse + specular / float(count));
+}
+
+#if ENVIRONMENT
+// The specular part from the map: directions drawn from the lobe, each looked up at the width of its share of the lobe.
+vec3 environmentReflection(LitPoint point) {
+    mat3 frame = frameAround(point.normal);
+    vec3 toEye = point.toEye * frame;
+    toEye.z = max(abs(toEye.z), 1e-4);
+    uint count = max(surfaceLight.environmentSamples, 1u);
+    // Averaged frames draw new directions in each; a single frame uses the same in all pixels, so that it has no noise.
+    vec2 start = viewConverges() ? pixelNoise2(point.pixel, 7u) : vec2(0.5 / float(count), 0.5);
+    float alpha = point.brdf.alpha;
+    vec3 sum = vec3(0.0);
+    for (uint i = 0u; i < count; ++i) {
+        vec2 u = vec2(fract(start.x + float(i) / float(count)), fract(start.y + float(i) * 0.6180339887));
+        vec3 halfway = sampleVisibleNormal(alpha, toEye, u);
+        float viewDotHalf = dot(toEye, halfway);
+        vec3 local = 2.0 * viewDotHalf * halfway - toEye;
+        if (!(local.z > 0.0)) continue;
+        vec3 direction = frame * local;
+        if (!(dot(direction, point.geometricNormal) > 0.0)) continue;
+        vec3 radiance;
+        if (viewConverges()) {
+            radiance = environmentRadiance(direction, 0.0);
+        } else {
+            // G₁(eye)/(4 eye.z) = smithVisibility / 2
+            float density = 0.5 * smithVisibility(alpha, toEye.z) * ggxDistribution(alpha, vec3(0.0, 0.0, 1.0), halfway);
+            radiance = environmentRadianceOver(direction, 1.0 / (float(count) * max(density, 1e-6)));
+        }
+        float shadowing = 2.0 * local.z * smithVisibility(alpha, local.z);
+        sum += radiance * specularFresnel(point.brdf, viewDotHalf) * shadowing;
+    }
+    return sum / float(count);
+}
+#endif
+
+// Radiance towards the eye, nits: LSE before the media between the surface and the eye.
+vec3 directLight(LitPoint point) {
+    vec3 sum = vec3(0.0);
+    vec3 fromEnvironment = vec3(0.0);
+    EnvironmentVisibility seen = EnvironmentVisibility(vec3(0.0), 0.0);
+    float lightsShare = 1.0;
+#if ENVIRONMENT
+    lightsShare = smoothstep(surfaceLight.roughnessOfMap, surfaceLight.roughnessOfLights, sqrt(point.brdf.alpha));
+#endif
+    uint cluster = clusterOfPosition(point.position);
+    uint count = clusterLightCount(cluster);
+    for (uint i = 0u; i < count; ++i) {
+        uint light = clusterLight(cluster, i);
+        vec2 u = pixelNoise2(point.pixel, 16u + i);
+        bool environmentLight = (lights[light].flags & kLightFromEnvironment) != 0u;
+        if (lights[light].type == kLightRect && !viewConverges()) sum += lightOfRect(light, point, u);
+        else if (environmentLight) fromEnvironment += lightOfPoint(light, point, u, lightsShare, 1.0, seen);
+        else sum += lightOfPoint(light, point, u, 1.0, 0.0, seen);
+    }
+#if ENVIRONMENT
+    if (lightsShare < 1.0 && (point.brdf.specular > 0.0 || point.brdf.metallic > 0.0)) {
+        vec3 visible = seen.weight > 0.0 ? seen.seen / seen.weight : vec3(1.0);
+        fromEnvironment += (1.0 - lightsShare) * visible * environmentReflection(point);
+    }
+#endif
+    return sum + fromEnvironment * (surfaceLight.materialOcclusion != 0u ? point.occlusion : 1.0);
+}
+
+#endif
