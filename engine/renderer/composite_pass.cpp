@@ -26,60 +26,42 @@ void TermImages::replace(Term term, fg::TextureHandle image) {
         if (images[i].terms == bit(term)) images[i].image = image;
 }
 
-DirectImages addCompositePass(fg::FrameGraph& graph, const CompositeInputs& inputs) {
-    struct Data { fg::TextureHandle surfaceEmission, surfaceDirect, transmittance, mediumEmission, emission, direct; bool emits; };
-    if (!hasContent(graph, inputs.transmittance)) {
-        graph.addPass<Data>("composite", [](fg::Builder& builder, Data&) { builder.skip("no medium between the eye and the surfaces"); },
-                            [](const Data&, fg::PassContext&) {});
-        return {inputs.surfaceEmission, inputs.surfaceDirect};
-    }
-    const Data& pass = graph.addPass<Data>("composite",
+fg::TextureHandle addCompositePass(fg::FrameGraph& graph, const char* passName, const char* imageName, fg::TextureHandle radiance,
+                                   fg::TextureHandle transmittance, fg::TextureHandle added) {
+    struct Data { fg::TextureHandle radiance, transmittance, added, seen; };
+    const bool throughMedia = hasContent(graph, transmittance);
+    const Data& pass = graph.addPass<Data>(passName,
         [&](fg::Builder& builder, Data& data) {
-            data.emits = hasContent(graph, inputs.mediumEmission);
-            data.surfaceEmission = builder.read(inputs.surfaceEmission);
-            data.surfaceDirect = builder.read(inputs.surfaceDirect);
-            data.transmittance = builder.read(inputs.transmittance);
-            if (data.emits) data.mediumEmission = builder.read(inputs.mediumEmission);
-            const fg::TextureDesc size = graph.desc(inputs.surfaceEmission);
-            data.emission = builder.create("term.LE", fg::texture2D(fg::Format::RGBA32F, size.width, size.height));
-            data.direct = builder.create("term.LSE", fg::texture2D(fg::Format::RGBA32F, size.width, size.height));
-        },
-        [](const Data& data, fg::PassContext& context) {
-            auto command = context.compute("post/composite.comp", {{"EMISSION", data.emits}});
-            command.bind("surfaceEmission", data.surfaceEmission).bind("surfaceDirect", data.surfaceDirect)
-                .bind("transmittance", data.transmittance).bind("imageLE", data.emission).bind("imageLSE", data.direct);
-            if (data.emits) command.bind("mediumEmission", data.mediumEmission);
-            command.dispatchOver(data.emission);
-        });
-    return {pass.emission, pass.direct};
-}
-
-fg::TextureHandle addAttenuatePass(fg::FrameGraph& graph, const char* name, fg::TextureHandle radiance, fg::TextureHandle transmittance) {
-    struct Data { fg::TextureHandle radiance, transmittance, attenuated; };
-    if (!hasContent(graph, transmittance)) return radiance;
-    return graph.addPass<Data>(name,
-        [&](fg::Builder& builder, Data& data) {
+            if (!throughMedia) return builder.skip("no medium between the eye and the surfaces");
             data.radiance = builder.read(radiance);
             data.transmittance = builder.read(transmittance);
-            data.attenuated = builder.create("term.indirectOnSurfaces", graph.desc(radiance));
+            if (hasContent(graph, added)) data.added = builder.read(added);
+            const fg::TextureDesc size = graph.desc(radiance);
+            data.seen = builder.create(imageName, fg::texture2D(fg::Format::RGBA32F, size.width, size.height));
         },
         [](const Data& data, fg::PassContext& context) {
-            context.compute("post/attenuate.comp").bind("radiance", data.radiance).bind("transmittance", data.transmittance)
-                .bind("attenuated", data.attenuated).dispatchOver(data.attenuated);
-        }).attenuated;
+            auto command = context.compute("post/attenuate.comp", {{"ADD", data.added ? 1 : 0}});
+            command.bind("radiance", data.radiance).bind("transmittance", data.transmittance).bind("seen", data.seen);
+            if (data.added) command.bind("added", data.added);
+            command.dispatchOver(data.seen);
+        });
+    return throughMedia ? pass.seen : radiance;
 }
 
-fg::TextureHandle addSumPass(fg::FrameGraph& graph, const TermImages& images) {
+fg::TextureHandle addSumPass(fg::FrameGraph& graph, const TermImages& images, int width, int height) {
     struct Data { TermImages images; fg::TextureHandle sum; };
-    CHECK(images.count > 0, "a frame needs at least one term");
     return graph.addPass<Data>("sum",
         [&](fg::Builder& builder, Data& data) {
             data.images = images;
             for (uint32_t i = 0; i < images.count; ++i) data.images.images[i].image = builder.read(images.images[i].image);
-            const fg::TextureDesc size = graph.desc(images.images[0].image);
-            data.sum = builder.create("beauty", fg::texture2D(fg::Format::RGBA32F, size.width, size.height));
+            data.sum = builder.create("beauty", fg::texture2D(fg::Format::RGBA32F, width, height),
+                                      images.count > 0 ? fg::Access::StorageWrite : fg::Access::TransferWrite);
         },
         [](const Data& data, fg::PassContext& context) {
+            if (data.images.count == 0) {
+                static constexpr float kBlack[4] = {0, 0, 0, 1};
+                return context.clearTexture(data.sum, kBlack);
+            }
             static constexpr const char* kNames[kMaxTermImages] = {"image0", "image1", "image2", "image3", "image4", "image5", "image6", "image7"};
             auto command = context.compute("post/sum.comp", {{"COUNT", int32_t(data.images.count)}});
             for (uint32_t i = 0; i < data.images.count; ++i) command.bind(kNames[i], data.images.images[i].image);

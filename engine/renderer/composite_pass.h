@@ -7,22 +7,14 @@
 
 namespace tyndall {
 
-/// T·emission (+ the media's own) as LE and T·direct as LSE: view-sized RGBA32F. Skipped in vacuum, where the surfaces' images
-/// are the terms already: then `surfaceEmission` and `surfaceDirect` are returned as they are.
-struct CompositeInputs {
-    fg::TextureHandle surfaceEmission, surfaceDirect; // leaving surfaces towards the eye
-    fg::TextureHandle transmittance, mediumEmission;  // absent or null without media
-};
-struct DirectImages {
-    fg::TextureHandle emission, direct;
-};
-DirectImages addCompositePass(fg::FrameGraph& graph, const CompositeInputs& inputs);
+/// One term's image: `radiance` leaving surfaces, attenuated by the media between them and the eye, plus what the media add.
+/// `transmittance` and `added` may be absent. In vacuum the pass is skipped and `radiance` returned as it is.
+/// `passName` and `imageName` must outlive the frame.
+fg::TextureHandle addCompositePass(fg::FrameGraph& graph, const char* passName, const char* imageName, fg::TextureHandle radiance,
+                                   fg::TextureHandle transmittance, fg::TextureHandle added = {});
 
-/// `radiance` as seen through the media; itself in vacuum. `name` is the pass's.
-fg::TextureHandle addAttenuatePass(fg::FrameGraph& graph, const char* name, fg::TextureHandle radiance, fg::TextureHandle transmittance);
-
-/// The sum of all images, in order. CHECKs that there is at least one.
-fg::TextureHandle addSumPass(fg::FrameGraph& graph, const TermImages& images);
+/// The sum of all images, in order; black where there is none.
+fg::TextureHandle addSumPass(fg::FrameGraph& graph, const TermImages& images, int width, int height);
 
 /// Mean of `image` over `frame` frames, this one included (frame 1 starts anew), kept under `historyName`.
 /// Alpha holds the sum of squared deviations of luminance.
