@@ -40,7 +40,7 @@ struct MediaResources {
     fg::TextureHandle opticalDepth;     // light-space optical depth of the grids; null where no light has a volume
     fg::StaticTexture noOpticalDepth;   // bound in its place then
     uint32_t count = 0;            // media that can be seen or can shade what is seen; 0: bind nothing, include nothing
-    uint32_t phaseGroupCount = 0;  // different phase functions among them
+    uint32_t phaseGroups = 1;      // the define PHASE_GROUPS: 1 where one phase function is enough, else 8
 };
 
 struct ViewResources {
@@ -72,6 +72,27 @@ Command& bindMedia(Command& command, const MediaResources& media) {
         .bind("OpticalDepthViews", media.opticalDepthViews).bind("mediumAtlas", media.atlas);
     if (media.opticalDepth) return command.bind("lightOpticalDepth", media.opticalDepth);
     return command.bind("lightOpticalDepth", media.noOpticalDepth);
+}
+
+/// Declares that the pass reads the lights, their lists and their shadows; the result is what bindLights() takes.
+inline LightResources readLights(fg::Builder& builder, const LightResources& lights) {
+    LightResources read = lights;
+    read.lights = builder.read(lights.lights);
+    if (lights.clusters) read.clusters = builder.read(lights.clusters);
+    if (lights.shadowViews) read.shadowViews = builder.read(lights.shadowViews);
+    if (lights.shadowAtlas) read.shadowAtlas = builder.read(lights.shadowAtlas);
+    return read;
+}
+
+/// For shaders that include lighting/light.glsl, lighting/shadow.glsl and lighting/clusters.glsl, or some of them; `lights`
+/// from readLights(). Light-space optical depth is bound by who uses it.
+template <typename Command>
+Command& bindLights(Command& command, const LightResources& lights) {
+    command.bind("Lights", lights.lights);
+    if (lights.clusters) command.bind("Clusters", lights.clusters);
+    if (lights.shadowViews) command.bind("ShadowViews", lights.shadowViews);
+    if (lights.shadowAtlas) command.bind("shadowAtlas", lights.shadowAtlas);
+    return command;
 }
 
 } // namespace tyndall

@@ -1,0 +1,43 @@
+#pragma once
+// Draws the shadow maps of a plan into the atlas. Only maps whose picture changed are drawn: each remembers what it
+// was drawn from.
+
+#include <cstdint>
+#include <vector>
+
+#include "core/version.h"
+#include "renderer/frame_resources.h"
+#include "renderer/shadow_views.h"
+
+namespace tyndall {
+
+class GpuScene;
+
+struct ShadowResources {
+    fg::BufferHandle views;    // ShadowView[]
+    fg::TextureHandle atlas;   // Depth32F array; absent where nothing casts a shadow
+};
+
+class ShadowPass {
+public:
+    /// `plan` and `scene` are read when the graph runs. One object draws for one executor.
+    ShadowResources addPasses(fg::FrameGraph& graph, const GpuScene& scene, const ShadowPlan& plan, const ViewResources& view);
+    [[nodiscard]] uint64_t mapsDrawn() const { return mapsDrawn_; }
+
+private:
+    /// A square of the atlas and what it shows.
+    struct Held {
+        int layer;
+        vec4 square;
+        uint64_t key;
+    };
+    struct Data;
+    void draw(const Data& data, fg::PassContext& context);
+    void drawMap(const Data& data, size_t index, fg::PassContext& context) const;
+
+    std::vector<Held> held_;
+    Version heldCasters_ = 0;
+    uint64_t mapsDrawn_ = 0;
+};
+
+} // namespace tyndall

@@ -1,0 +1,2 @@
+// Depth alone: empties one square of the shadow atlas.
+void main() {}
