@@ -1,0 +1,27 @@
+#pragma once
+// The subcommands of `tyndall`. Each adds itself to the command line; `run` is set when it was chosen.
+
+#include <functional>
+
+#include "core/progress.h"
+#include "programs/outcome.h"
+
+namespace CLI {
+class App;
+}
+
+namespace tyndall {
+
+/// What every subcommand sees of the options before it.
+struct GlobalOptions {
+    bool quiet = false;
+    [[nodiscard]] ProgressStyle progress() const { return quiet ? ProgressStyle::Quiet : detectProgressStyle(); }
+};
+
+using Run = std::function<Outcome(const GlobalOptions&)>;
+
+void addCaptureCommand(CLI::App& program, Run& run);
+void addGraphCommand(CLI::App& program, Run& run);
+void addInfoCommand(CLI::App& program, Run& run);
+
+} // namespace tyndall

@@ -1,0 +1,89 @@
+#include "programs/render_options.h"
+
+#include <charconv>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+namespace tyndall {
+namespace fs = std::filesystem;
+namespace {
+
+constexpr int kLargestSide = 16384; // the least that OpenGL 4.5 guarantees for a texture
+
+bool parseSide(std::string_view text, int& side) {
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), side);
+    return error == std::errc() && end == text.data() + text.size() && side >= 1 && side <= kLargestSide;
+}
+
+/// A file, or the name of a plugin in one of the folders.
+Result<fs::path> findPlugin(const std::string& nameOrFile) {
+    if (nameOrFile.find('/') != std::string::npos || nameOrFile.ends_with(".so")) return fs::path(nameOrFile);
+    std::string places;
+    for (const fs::path& folder : pluginFolders()) {
+        const fs::path file = folder / (nameOrFile + ".so");
+        if (fs::exists(file)) return file;
+        places += (places.empty() ? "'" : ", '") + folder.string() + "'";
+    }
+    return Error{fmt::format("--plugin {}: there is no {}.so in {}", nameOrFile, nameOrFile, places)};
+}
+
+} // namespace
+
+std::vector<fs::path> pluginFolders() {
+    std::error_code error;
+    const fs::path program = fs::read_symlink("/proc/self/exe", error).parent_path();
+    return {(program / "../lib/tyndall/plugins").lexically_normal(), (program / "../lib/plugins").lexically_normal()};
+}
+
+void addRenderOptions(CLI::App& command, RenderOptions& options) {
+    command.add_option("SCENE", options.scene, "A scene file, or a .gltf, .glb, .vdb or .nvdb")->required();
+    command.add_option("--size", options.size, "Width and height in pixels (1280x720)")->type_name("WxH");
+    command.add_option("--backend", options.backend, "How to get an OpenGL context: auto, egl or osmesa (auto)")->type_name("NAME");
+    command.add_option("--device", options.device, "The EGL device to render on; 'tyndall info' lists them")->type_name("N");
+    command.add_option("--gi", options.gi, "Technique for indirect light: auto, none, a name, or TERM=NAME,... (auto)")->type_name("NAME");
+    command.add_option("--terms", options.terms, "Transport terms to render, comma-separated: LE,LSE,LVE ... (all)")->type_name("LIST");
+    command.add_option("--quality", options.quality, "Preset: low, medium, high or ultra")->type_name("NAME");
+    command.add_option("--set", options.assignments, "Any setting, repeatable; 'tyndall info --settings' lists them")
+        ->type_name("KEY=VALUE")->allow_extra_args(false);
+    command.add_option("--plugin", options.plugins, "A shared-library plugin, by name or file, repeatable")
+        ->type_name("PLUGIN")->allow_extra_args(false);
+    command.add_option("--camera", options.camera, "The camera to look through, by node name (the scene's own)")->type_name("NAME");
+    command.add_option("--time", options.time, "Where the scene's clock starts (0)")->type_name("SECONDS");
+    command.add_option("--seed", options.seed, "Seed of everything random (0)")->type_name("N");
+}
+
+Result<void> parseSize(const std::string& text, int& width, int& height) {
+    const size_t middle = text.find('x');
+    if (middle != std::string::npos && parseSide(std::string_view(text).substr(0, middle), width) &&
+        parseSide(std::string_view(text).substr(middle + 1), height))
+        return {};
+    return Error{fmt::format("--size {}: it takes WIDTHxHEIGHT, each 1 to {}, such as 1280x720", text, kLargestSide)};
+}
+
+Result<RenderPlan> understand(const RenderOptions& options) {
+    RenderPlan plan;
+    if (Result<void> size = parseSize(options.size, plan.width, plan.height); !size.ok()) return size.error();
+    const Result<gl::Backend> backend = gl::parseBackend(options.backend);
+    if (!backend.ok()) return Error{"--backend " + options.backend + ": " + backend.message()};
+    plan.backend = *backend;
+    if (!options.terms.empty()) {
+        const Result<TermSet> terms = parseTerms(options.terms);
+        if (!terms.ok()) return Error{"--terms " + options.terms + ": " + terms.message()};
+        plan.terms = *terms;
+    }
+    if (!options.quality.empty()) {
+        const Result<Quality> quality = parseQuality(options.quality);
+        if (!quality.ok()) return Error{"--quality: " + quality.message()};
+        plan.quality = *quality;
+    }
+    if (options.device < -1) return Error{fmt::format("--device {}: devices are numbered from 0; 'tyndall info' lists them", options.device)};
+    for (const std::string& name : options.plugins) {
+        Result<fs::path> file = findPlugin(name);
+        if (!file.ok()) return file.error();
+        plan.plugins.push_back(std::move(*file));
+    }
+    return plan;
+}
+
+} // namespace tyndall

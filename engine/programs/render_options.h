@@ -1,0 +1,49 @@
+#pragma once
+// The options that every command has which renders a scene.
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/settings.h"
+#include "gl/context.h"
+#include "programs/outcome.h"
+#include "transport/terms.h"
+
+namespace CLI {
+class App;
+}
+
+namespace tyndall {
+
+/// As they stand on the command line.
+struct RenderOptions {
+    std::string scene;
+    std::string size = "1280x720", backend = "auto", gi, terms, quality, camera;
+    std::vector<std::string> assignments, plugins;
+    double time = 0; // seconds
+    uint32_t seed = 0;
+    int device = -1;
+};
+
+/// The same, understood.
+struct RenderPlan {
+    int width = 0, height = 0;
+    gl::Backend backend = gl::Backend::Auto;
+    TermSet terms = kAllTerms;
+    std::optional<Quality> quality;
+    std::vector<std::filesystem::path> plugins;
+};
+
+void addRenderOptions(CLI::App& command, RenderOptions& options);
+/// Errors name the option, what it says and what it takes.
+Result<RenderPlan> understand(const RenderOptions& options);
+
+/// "1280x720": each side 1 to 16384 pixels.
+Result<void> parseSize(const std::string& text, int& width, int& height);
+/// The folders where shared-library plugins lie: beside the program in a build, ../lib/tyndall/plugins when installed.
+std::vector<std::filesystem::path> pluginFolders();
+
+} // namespace tyndall
