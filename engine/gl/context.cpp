@@ -188,6 +188,7 @@ Result<Context> Context::adopt(std::unique_ptr<ContextPlatform> platform, const 
 }
 
 Context::Context(std::unique_ptr<State> state) : state_(std::move(state)) {}
+Context::Context() noexcept = default;
 Context::Context(Context&&) noexcept = default;
 
 Context& Context::operator=(Context&& other) noexcept {

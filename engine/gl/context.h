@@ -69,7 +69,7 @@ public:
     /// Errors: it is no OpenGL 4.5 core context, or cannot be made current.
     static Result<Context> adopt(std::unique_ptr<ContextPlatform> platform, const ContextOptions& options);
 
-    Context() = default;
+    Context() noexcept;
     Context(Context&&) noexcept;
     Context& operator=(Context&&) noexcept;
     ~Context();
