@@ -1,19 +1,22 @@
-// Blackbody radiance from a table: logarithms, evenly spaced in temperature (engine/renderer/media_system.cpp fills it).
+// Blackbody radiance from a table with entries evenly spaced in 1/T, where the logarithm of luminance is nearly straight
+// (engine/media/blackbody.h makes it).
 #ifndef TYNDALL_MEDIA_BLACKBODY
 #define TYNDALL_MEDIA_BLACKBODY
 #include "media/density.glsl"
 
-/// xyz: natural logarithm of the RGB radiance in nits at temperature index · blackbodyStep kelvin; entry 0 is absolute zero.
+/// xyz: linear sRGB at 1 nit; w: log2 of the luminance in nits.
 layout(std430) readonly buffer Blackbody {
+    vec4 blackbodyRange; // kelvin of the first entry, of the last, 1 / (1/first - 1/last), number of entries - 1
     vec4 blackbodyTable[];
 };
-const float kBlackbodyStep = 5.0; // kelvin
 
-/// RGB nits of a black body.
+/// RGB nits of a black body; 0 for matter cooler than the table.
 vec3 blackbodyRadiance(float kelvin) {
-    float x = clamp(kelvin / kBlackbodyStep, 0.0, float(blackbodyTable.length() - 1) - 1e-3);
-    int i = int(x);
-    return exp(mix(blackbodyTable[i].xyz, blackbodyTable[i + 1].xyz, x - float(i)));
+    if (!(kelvin >= blackbodyRange.x)) return vec3(0.0);
+    float x = (1.0 / blackbodyRange.x - 1.0 / min(kelvin, blackbodyRange.y)) * blackbodyRange.z * blackbodyRange.w;
+    float i = clamp(floor(x), 0.0, blackbodyRange.w - 1.0);
+    vec4 entry = mix(blackbodyTable[int(i)], blackbodyTable[int(i) + 1], clamp(x - i, 0.0, 1.0));
+    return entry.xyz * exp2(entry.w);
 }
 
 /// Nits per metre and density that medium `m` emits by its temperature at a point of render space.

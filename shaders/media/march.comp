@@ -15,6 +15,9 @@ layout(rgba32f) uniform writeonly image2D inScatter;
 layout(rgba32f) uniform writeonly image2D emission;
 #endif
 
+// Known when compiling: what is not wanted costs nothing.
+const uint kWanted = (IN_SCATTER == 1 ? kMarchInScatter : 0u) | (EMISSION == 1 ? kMarchEmission : 0u);
+
 void main() {
     ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
     if (any(greaterThanEqual(pixel, imageSize(transmittance)))) return;
@@ -22,7 +25,7 @@ void main() {
     ivec2 full = min(pixel * int(params.factor) + int(params.factor) / 2, textureSize(depth, 0) - 1);
     vec2 centre = vec2(full) + 0.5;
     float distance = rayDistanceFromDepth(centre, texelFetch(depth, full, 0).r);
-    MarchResult march = marchMedia(cameraRay(centre), distance, params.flags, params.lightCount, uvec2(full));
+    MarchResult march = marchMedia(cameraRay(centre), distance, kWanted, params.lightCount, uvec2(full));
     imageStore(transmittance, pixel, vec4(exp(-march.opticalDepth), 1.0));
 #if IN_SCATTER
     imageStore(inScatter, pixel, vec4(march.inScatter, 1.0));

@@ -32,6 +32,9 @@ float likeness(float distance, vec3 through, float coarseDistance, vec3 coarseTh
     return 1.0 / (1.0 + seen * depthError / params.depthTolerance) / (1.0 + throughError / params.transmittanceTolerance);
 }
 
+// Known when compiling: what is not wanted costs nothing.
+const uint kWanted = (IN_SCATTER == 1 ? kMarchInScatter : 0u) | (EMISSION == 1 ? kMarchEmission : 0u);
+
 void main() {
     ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
     if (any(greaterThanEqual(pixel, imageSize(transmittance)))) return;
@@ -67,7 +70,7 @@ void main() {
     inScatterSum /= total;
     emissionSum /= total;
     if ((params.flags & kMarchRefine) != 0u && best < params.refineWeight) {
-        MarchResult march = marchMedia(ray, distance, params.flags, params.lightCount, uvec2(pixel));
+        MarchResult march = marchMedia(ray, distance, kWanted, params.lightCount, uvec2(pixel));
         through = exp(-march.opticalDepth);
         inScatterSum = march.inScatter;
         emissionSum = march.emission;

@@ -1,0 +1,25 @@
+#pragma once
+// The media between the eye and the surfaces.
+
+#include "renderer/media_system.h"
+
+namespace tyndall {
+
+struct MediumMarchInputs {
+    ViewResources view;
+    fg::TextureHandle depth;   // GBuffer::depth
+    LightResources lights;
+    bool inScatter = true;     // the term LVE is wanted
+    bool emission = true;      // the media's part of LE is wanted
+};
+
+/// View-sized RGBA32F. Null: not computed, because there is none (reason in the report) or it is not wanted.
+struct MediumMarch {
+    fg::TextureHandle transmittance; // of the way to the surface; null: 1 everywhere
+    fg::TextureHandle inScatter;     // nits: LVE
+    fg::TextureHandle emission;      // nits: the media's part of LE
+};
+
+MediumMarch addMediumMarchPass(fg::FrameGraph& graph, const MediaFrame& frame, const MediumMarchInputs& inputs, const MediaSettings& settings);
+
+} // namespace tyndall
