@@ -32,6 +32,8 @@ using glm::vec4;
 
 inline constexpr double kPi = 3.14159265358979323846;
 
+inline float maximumOf(const vec3& v) { return glm::max(v.x, glm::max(v.y, v.z)); }
+
 /// Axis-aligned box; empty when minimum > maximum (the default).
 struct Bounds {
     dvec3 minimum{std::numeric_limits<double>::infinity()};

@@ -1,0 +1,55 @@
+#pragma once
+// The frame as a recipe: frame.cpp reads from top to bottom.
+
+#include "plugin/registry.h"
+#include "renderer/blend_pass.h"
+#include "renderer/composite_pass.h"
+#include "renderer/deferred_lighting_pass.h"
+#include "renderer/environment_map.h"
+#include "renderer/gbuffer_pass.h"
+#include "renderer/gpu_scene.h"
+#include "renderer/light_system.h"
+#include "renderer/media_system.h"
+#include "renderer/medium_march_pass.h"
+#include "renderer/tonemap_pass.h"
+
+namespace tyndall {
+
+/// What the renderer keeps from frame to frame.
+struct FrameParts {
+    GpuScene& surfaces;
+    LightSystem& lights;
+    MediaSystem& media;
+    BlendList& blended;
+    EnvironmentMap& environment;
+    plugin::PluginRegistry& plugins;
+    const GBufferSettings& gbufferSettings;
+    const SurfaceLightSettings& surfaceLightSettings;
+    const PostSettings& postSettings;
+};
+
+/// What this frame is to be.
+struct FrameOrder {
+    ViewResources view;
+    const FramePlan* plan = nullptr;
+    plugin::SceneChange sceneChange{};
+    float ev100 = 0;
+    uint32_t averagedFrame = 0;     // 0: this frame stands alone; else its number in the average, from 1
+    bool separateTerms = false;     // an image a term is wanted
+    std::span<const Bounds> surfaceBounds; // of everything drawn, render space
+};
+
+/// Handles of what can be read back.
+struct FrameImages {
+    GBuffer gbuffer;
+    fg::TextureHandle transmittance; // of the media before the surfaces; null in vacuum
+    TermImages terms;                // averaged where the frame is
+    fg::TextureHandle beauty;        // their sum; averaged where the frame is, alpha then holds squared deviations
+    fg::TextureHandle display;       // RGBA8
+    fg::BufferHandle invalidPixels;
+};
+
+/// Records the passes of one frame. Everything in `parts` was updated for it.
+FrameImages recordFrame(fg::FrameGraph& graph, const FrameParts& parts, const FrameOrder& order);
+
+} // namespace tyndall

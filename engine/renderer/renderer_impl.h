@@ -1,0 +1,63 @@
+#pragma once
+// What a Renderer holds; included by renderer.cpp and renderer_readback.cpp alone.
+
+#include "core/log.h"
+#include "gl/shader_library.h"
+#include "renderer/accumulation.h"
+#include "renderer/frame.h"
+#include "renderer/inspect_pass.h"
+#include "renderer/renderer.h"
+
+namespace tyndall {
+
+/// Takes plugins' shaders into the library.
+class PluginHost final : public plugin::Host {
+public:
+    explicit PluginHost(gl::ShaderLibrary& library) : library_(library) {}
+    void addShader(const char* path, const char* text) override { library_.addSource(path, text); }
+    void log(const char* message) override { log::info(message); }
+
+private:
+    gl::ShaderLibrary& library_;
+};
+
+struct Renderer::Impl {
+    Impl(gl::Context& glContext, const RendererOptions& options)
+        : context(glContext), executor(shaders, {.poison = options.poison, .checkTexels = options.checkTexels, .keepAll = false, .timings = true}), host(shaders) {}
+
+    gl::Context& context;
+    gl::ShaderLibrary shaders;
+    fg::Executor executor;
+    PluginHost host;
+    GpuScene surfaces{executor};
+    LightSystem lights;
+    MediaSystem media{executor};
+    EnvironmentMap environment{executor};
+    BlendList blended{executor};
+    plugin::PluginRegistry plugins;
+
+    SettingsRegistry settings;
+    GBufferSettings gbufferSettings{};
+    SurfaceLightSettings surfaceLightSettings{};
+    PostSettings postSettings{};
+    ConvergeSettings convergeSettings{};
+    InspectSettings inspectSettings{};
+    std::vector<Technique> techniques;
+
+    const Scene* scene = nullptr;
+    Bounds sceneBounds;       // world
+    SceneVersions seenBounds; // of what sceneBounds was made from
+    dvec3 renderOrigin{0};
+    std::vector<Bounds> surfaceBounds;
+    Accumulation average;
+    FrameOrder order;
+    FrameImages images;
+    fg::TextureHandle inspected;
+    float ev100 = 0;
+
+    void registerSettings();
+    Result<void> updateScene(const FrameRequest& request, const dmat4& worldFromCamera, const Camera& camera);
+    std::string averageKey(const FrameRequest& request) const;
+};
+
+} // namespace tyndall
