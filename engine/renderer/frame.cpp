@@ -21,8 +21,7 @@ SurfaceLight addSurfaceLight(fg::FrameGraph& graph, const FrameParts& parts, con
     return addDeferredLightingPass(graph, inputs);
 }
 
-MediumMarch addMarch(fg::FrameGraph& graph, const FrameParts& parts, const FrameOrder& order, const MediaFrame& media,
-                     fg::TextureHandle depth, const LightResources& lights) {
+MediumMarch addMarch(fg::FrameGraph& graph, const FrameOrder& order, const MediaFrame& media, fg::TextureHandle depth, const LightResources& lights) {
     MediumMarchInputs inputs;
     inputs.view = order.view;
     inputs.depth = depth;
@@ -88,7 +87,7 @@ FrameImages recordFrame(fg::FrameGraph& graph, const FrameParts& parts, const Fr
 
     // Direct light on surfaces and in media.
     const SurfaceLight surfaces = addSurfaceLight(graph, parts, order, images.gbuffer, lights, media.resources);
-    const MediumMarch march = addMarch(graph, parts, order, media, images.gbuffer.depth, lights);
+    const MediumMarch march = addMarch(graph, order, media, images.gbuffer.depth, lights);
     images.transmittance = march.transmittance;
     images.terms = addDirectTerms(graph, surfaces, march);
 
