@@ -125,6 +125,43 @@ struct Environment {
     Version version = 0;
 };
 
+enum class PrimitiveShape : int32_t { Box = 0, Sphere = 1, Plane = 2, Disk = 3, Cylinder = 4 };
+
+/// What a scene file's `primitive` says; the mesh made from it is in the same node's `meshes`.
+struct Primitive {
+    PrimitiveShape shape = PrimitiveShape::Box;
+    dvec3 size{1.0}; // full extents, node space; planes and disks lie in XZ
+    bool operator==(const Primitive&) const = default;
+};
+
+enum class Interpolation : int32_t { Linear = 0, Step = 1, CubicSpline = 2 };
+
+/// Keyframes of one property of a node, as written (glTF's layout: CubicSpline has three values a key).
+struct Animation {
+    std::string property; // "translation", "rotation", "scale", "light.intensity", "light.color"
+    std::vector<double> times;  // seconds, rising
+    std::vector<double> values; // flattened
+    Interpolation interpolation = Interpolation::Linear;
+    bool operator==(const Animation&) const = default;
+};
+
+/// A grid whose `file` holds %04d: frames first to last at `fps`.
+struct GridSequence {
+    int first = 0, last = 0;
+    double fps = 24;
+    bool loop = false;
+    bool operator==(const GridSequence&) const = default;
+};
+
+/// Particles made by rule instead of read from a file.
+struct ParticleGenerator {
+    std::string kind = "cloud";
+    int count = 1024;
+    int64_t seed = 1;
+    double radius = 1; // metres, node space
+    bool operator==(const ParticleGenerator&) const = default;
+};
+
 /// A node carries at most one of each. Local transform is translation·rotation·scale or any matrix.
 struct Node {
     std::string name;
@@ -136,7 +173,14 @@ struct Node {
     std::vector<int> meshes;          // drawn with this node's transform
     std::vector<dmat4> instances;     // EXT_mesh_gpu_instancing, node space; empty: one, identity
     int light = kNone, camera = kNone, medium = kNone;
-    int source = kNone;               // index of the scene-file node that brought it in
+    int source = kNone;               // index of the scene-file node that brought it in; kNone for those nodes themselves
+
+    // As written in the scene file, for saving and for the clock.
+    std::string gltf;                 // the file mounted here
+    std::optional<Primitive> primitive;
+    std::vector<Animation> animations;
+    std::optional<GridSequence> sequence;
+    std::optional<ParticleGenerator> particles;
     [[nodiscard]] dmat4 localTransform() const;
 };
 

@@ -1,0 +1,87 @@
+// KHR_draco_mesh_compression.
+#include <cmath>
+
+#include <draco/compression/decode.h>
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "scene/gltf_model.h"
+
+namespace tyndall {
+namespace {
+
+/// What the accessor says about a normalised attribute: Draco's own flag may be missing.
+float scaleOf(const Json& accessor, const draco::PointAttribute& attribute) {
+    if (!accessor.value("normalized", false) || attribute.normalized()) return 1;
+    switch (accessor.at("componentType").get<int>()) {
+    case 5120: return 1.0f / 127;
+    case 5121: return 1.0f / 255;
+    case 5122: return 1.0f / 32767;
+    case 5123: return 1.0f / 65535;
+    default: return 1;
+    }
+}
+
+SharedFloats readAttribute(const draco::Mesh& mesh, const draco::PointAttribute& attribute, const Json& accessor) {
+    auto data = std::make_shared<FloatData>();
+    data->components = componentCount(accessor.at("type").get<std::string>());
+    data->values.resize(size_t(mesh.num_points()) * size_t(data->components));
+    const float scale = scaleOf(accessor, attribute);
+    for (uint32_t i = 0; i < mesh.num_points(); ++i) {
+        float values[16] = {};
+        const draco::AttributeValueIndex place = attribute.mapped_index(draco::PointIndex(i));
+        if (place.value() < attribute.size()) attribute.ConvertValue<float>(place, int8_t(data->components), values);
+        for (int c = 0; c < data->components; ++c) {
+            const float value = values[c] * scale;
+            data->values[size_t(i) * size_t(data->components) + size_t(c)] = std::abs(value) <= 1e18f ? value : 0;
+        }
+    }
+    return data;
+}
+
+} // namespace
+
+Result<void> decodeDraco(GltfFile& file, const Json& primitive, const std::string& pointer, PrimitiveSource& source) {
+    const Json& extension = primitive.at("extensions").at("KHR_draco_mesh_compression");
+    const std::string here = pointer + "/extensions/KHR_draco_mesh_compression";
+    const auto bytes = file.viewBytes(extension.at("bufferView").get<size_t>());
+    if (!bytes) return bytes.error();
+    draco::DecoderBuffer buffer;
+    buffer.Init(reinterpret_cast<const char*>(bytes->data()), bytes->size());
+    draco::Decoder decoder;
+    auto decoded = decoder.DecodeMeshFromBuffer(&buffer);
+    if (!decoded.ok()) return file.at(here, fmt::format("holds data that Draco cannot decode: {}", decoded.status().error_msg_string()));
+    const std::unique_ptr<draco::Mesh> mesh = std::move(decoded).value();
+    if (auto fits = file.charge(size_t(mesh->num_points()) + 3 * size_t(mesh->num_faces()), here); !fits) return fits;
+
+    source.indexed = true;
+    source.indices.reserve(3 * size_t(mesh->num_faces()));
+    for (uint32_t f = 0; f < mesh->num_faces(); ++f)
+        for (const draco::PointIndex& point : mesh->face(draco::FaceIndex(f))) source.indices.push_back(point.value());
+
+    const Json& accessors = file.array("accessors");
+    for (const auto& [name, id] : extension.at("attributes").items()) {
+        const draco::PointAttribute* attribute = mesh->GetAttributeByUniqueId(id.get<uint32_t>());
+        const auto accessor = primitive.at("attributes").find(name);
+        if (!attribute || accessor == primitive.at("attributes").end())
+            return file.at(here + "/attributes/" + name, "names an attribute that is not in the compressed data or not in the primitive");
+        const Json& described = accessors[accessor->get<size_t>()];
+        const int components = componentCount(described.at("type").get<std::string>());
+        if (components > 4 || components != int(attribute->num_components()))
+            return file.at(here + "/attributes/" + name, fmt::format("has {} components, but the accessor {}", int(attribute->num_components()), components));
+        if (auto fits = file.charge(size_t(mesh->num_points()) * size_t(components), here); !fits) return fits;
+        const SharedFloats data = readAttribute(*mesh, *attribute, described);
+        if (name == "POSITION") source.positions = data;
+        else if (name == "NORMAL") source.normals = data;
+        else if (name == "TANGENT") source.tangents = data;
+        else if (name == "COLOR_0") source.colors = data;
+        else if (name == "JOINTS_0") source.joints = data;
+        else if (name == "WEIGHTS_0") source.weights = data;
+        else
+            for (int set = 0; set < kMaxUvSets; ++set)
+                if (name == fmt::format("TEXCOORD_{}", set)) source.uvs[size_t(set)] = data;
+    }
+    return {};
+}
+
+} // namespace tyndall

@@ -1,0 +1,17 @@
+#pragma once
+// The rules of glTF 2.0 that the importer relies on: types and ranges of every property it reads, and that every index
+// points at something. Private to the folder.
+
+#include "core/result.h"
+#include "scene/json_text.h"
+
+namespace tyndall {
+
+/// Error: JSON pointer and sentence, without the file's name. Objects that are not read (animations, extras, unknown
+/// extensions) are not judged.
+Result<void> checkGltfRules(const Json& gltf);
+
+/// Error where `extensionsRequired` names one that is not understood; in `notes` a sentence for each that is only used.
+Result<void> checkGltfExtensions(const Json& gltf, std::vector<std::string>& notes);
+
+} // namespace tyndall

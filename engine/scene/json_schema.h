@@ -1,0 +1,19 @@
+#pragma once
+// The part of JSON Schema (draft 2020-12) that docs/scene.schema.json uses, with sentences for people.
+//
+// Keywords: type, const, enum, properties, required, additionalProperties, items, minItems, maxItems, minLength, minimum,
+// maximum, exclusiveMinimum, exclusiveMaximum, $ref ("#/…"), and anyOf, of which the first branch that
+// accepts the value's JSON type is taken, so that an error speaks of what was meant.
+
+#include "core/result.h"
+#include "scene/json_text.h"
+
+namespace tyndall {
+
+/// Error: "/nodes/2/light: unknown key 'intensty'; did you mean 'intensity'?", without the file's name.
+Result<void> validateJson(const Json& value, const Json& schema);
+
+/// docs/scene.schema.json, which is built into the program.
+const Json& sceneFileSchema();
+
+} // namespace tyndall

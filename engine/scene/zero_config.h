@@ -1,0 +1,26 @@
+#pragma once
+// What a bare file needs to make a picture: a camera that frames it, a light, an exposure, and for a volume a medium. Each
+// function adds to LoadedScene::supplied what it added to the scene.
+
+#include <filesystem>
+
+#include "core/result.h"
+#include "scene/scene_file.h"
+
+namespace tyndall {
+
+/// A perspective camera that sees all of Scene::worldBounds() from the front, a little from the right and from above;
+/// nothing where there is an active camera.
+void supplyCamera(LoadedScene& loaded);
+
+/// A sun and a dim sky where the scene has no light, no emission and no environment.
+void supplyLight(LoadedScene& loaded);
+
+/// EV100 for the light that arrives at the middle of the scene (incident metering, calibration constant 250 lx s).
+void supplyExposure(LoadedScene& loaded);
+
+/// A node with the grid of a .vdb or .nvdb file, its own transform kept, as a medium of albedo 0.99 and
+/// an optical depth of about 4 across the largest extent.
+Result<void> supplyMedium(LoadedScene& loaded, const std::filesystem::path& file);
+
+} // namespace tyndall

@@ -1,0 +1,3 @@
+tyndall_test(unit_scene LABEL unit
+  SOURCES scene_file_test.cpp scene_primitives_test.cpp scene_gltf_test.cpp
+  DEPENDS Tyndall::scene fmt::fmt)
