@@ -1,0 +1,124 @@
+#!/usr/bin/python3
+"""Measures what docs/benchmarks.md shows, and writes it.
+
+    tests/bench/tables.py [--build build/release] [--frames 10]
+
+Scenes: an empty one, Sponza, Sponza with media (the last two where the shared content is: $TYNDALL_CONTENT, else
+../shared/content). Every number comes from the report of `tyndall capture`: GPU times are the driver's timestamps, frame
+times the clock of a whole frame, the first one left out.
+"""
+
+import argparse
+import json
+import os
+import pathlib
+import subprocess
+import sys
+import tempfile
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+SIZES = ["640x360", "1280x720"]
+
+SUN = {"name": "sun", "light": {"type": "directional", "color": [1, 1, 1], "intensity": 20}, "rotation": [-0.5, 0.2, 0, 0.84]}
+LAMPS = [
+    {"name": "lamp", "light": {"type": "point", "color": [1, 0.8, 0.6], "intensity": 100}, "translation": [-4, 2, 0]},
+    {"name": "torch", "light": {"type": "spot", "intensity": 200, "innerConeAngle": 0.2, "outerConeAngle": 0.5},
+     "translation": [5, 5, 0], "rotation": [-0.70710678, 0, 0, 0.70710678]},
+]
+EYE = {"name": "eye", "camera": {"type": "perspective", "yfov": 0.9, "znear": 0.05},
+       "translation": [8, 2, 0], "rotation": [0, 0.70710678, 0, 0.70710678]}
+FOG = {"name": "fog", "medium": {"type": "homogeneous", "shape": "height", "scaleHeight": 20, "scattering": [0.02, 0.02, 0.02],
+                                  "absorption": [0.002, 0.002, 0.002], "anisotropy": 0.3}}
+
+
+def scenes(folder, content):
+    """Name and scene file of each row."""
+    yield "empty", write(folder, "empty", [EYE])
+    sponza = content / "sponza" / "Sponza.gltf"
+    if not sponza.exists():
+        print(f"note: '{sponza}' is not here; only the empty scene is measured", file=sys.stderr)
+        return
+    hall = {"name": "hall", "gltf": str(sponza)}
+    smoke = {"name": "smoke", "medium": {"type": "grid", "file": str(content / "vdb" / "smoke1.vdb"), "grid": "density",
+                                          "scattering": [4, 4, 4], "absorption": [0.4, 0.4, 0.4]},
+             "translation": [0, 1, 0], "scale": [0.05, 0.05, 0.05]}
+    yield "Sponza", write(folder, "sponza", [hall, SUN, *LAMPS, EYE])
+    yield "Sponza with fog and smoke", write(folder, "media", [hall, SUN, *LAMPS, FOG, smoke, EYE])
+
+
+def write(folder, name, nodes):
+    path = folder / f"{name}.scene.json"
+    path.write_text(json.dumps({"tyndall": 1, "name": name, "nodes": nodes, "camera": "eye"}))
+    return path
+
+
+def measure(program, scene, size, frames, folder):
+    report = folder / "report.json"
+    # Time stands still and nothing moves, but caches must not hide a pass's price: the report has each pass's last measured time.
+    subprocess.run([program, "capture", scene, "-o", folder / "out.png", "--size", size, "--frames", str(frames), "--time-step", "0",
+                    "--report", report, "--quiet"], check=True)
+    return json.loads(report.read_text())
+
+
+def cell(value):
+    return "" if value is None else f"{value:.1f}"
+
+
+def table(head, rows):
+    lines = ["| " + " | ".join(head) + " |", "| --- |" + " ---: |" * (len(head) - 1)]
+    return "\n".join(lines + ["| " + " | ".join(row) + " |" for row in rows]) + "\n"
+
+
+def summary(results):
+    head = ["scene", "size", "frame, ms", "95 %, ms", "first picture after, ms", "GPU memory, MiB", "resident, MiB"]
+    rows = [[name, size, cell(r["frame_ms"]["median"]), cell(r["frame_ms"]["p95"]), cell(r["startup_ms"]), cell(r["gpu_bytes"] / 2**20),
+             cell(r["peak_rss_bytes"] / 2**20)] for (name, size), r in results.items()]
+    return table(head, rows)
+
+
+def passes(results, size):
+    """One row a pass, one column a scene; a pass that did not run shows its status."""
+    columns = {name: {p["name"]: p for p in r["passes"]} for (name, s), r in results.items() if s == size}
+    names = list(dict.fromkeys(n for column in columns.values() for n in column))
+    def entry(p):
+        if p is None:
+            return ""
+        return cell(p.get("gpu_ms")) if p["status"] == "ran" else p["status"]
+    return table(["pass"] + list(columns), [[f"`{n}`"] + [entry(c.get(n)) for c in columns.values()] for n in names])
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--build", default=ROOT / "build/release", type=pathlib.Path)
+    parser.add_argument("--frames", default=10, type=int)
+    parser.add_argument("--output", default=ROOT / "docs/benchmarks.md", type=pathlib.Path)
+    arguments = parser.parse_args()
+    program = arguments.build / "bin/tyndall"
+    content = pathlib.Path(os.environ.get("TYNDALL_CONTENT", ROOT.parent / "shared/content"))
+    results = {}
+    with tempfile.TemporaryDirectory() as name:
+        folder = pathlib.Path(name)
+        for scene, path in scenes(folder, content):
+            for size in SIZES:
+                print(f"{scene} at {size}", file=sys.stderr)
+                results[scene, size] = measure(program, path, size, arguments.frames, folder)
+    any_report = next(iter(results.values()))
+    text = f"""# Benchmarks
+
+Made by `tests/bench/tables.py` on {os.cpu_count()} cores with {any_report["gl"]["renderer"]} ({any_report["gl"]["version"]}, {any_report["backend"]}), {arguments.frames} frames
+each. Software rendering: the numbers compare passes and scenes with each other; a GPU is another world.
+
+## Frames, start-up, memory
+The median and the 95th percentile leave out the first frame, in which shaders are compiled. "First picture after" counts from the
+start of the program: loading, compiling and that frame included.
+
+{summary(results)}
+"""
+    for size in SIZES:
+        text += f"## Milliseconds per pass at {size}\nA word in place of a number says why the pass did not run in the last frame.\n\n{passes(results, size)}\n"
+    arguments.output.write_text(text)
+    print(f"wrote {arguments.output}")
+
+
+if __name__ == "__main__":
+    main()
