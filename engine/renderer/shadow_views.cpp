@@ -112,13 +112,16 @@ std::vector<Slice> viewSlices(const gpu::ViewData& view, const Bounds& casters, 
     const dvec3 eye(view.cameraPosition), forward(view.cameraForward);
     double farthest = 0;
     for (int i = 0; i < 8; ++i)
-        farthest = std::max(farthest, glm::dot(forward, dvec3((i & 1) ? casters.maximum.x : casters.minimum.x,
-                                                              (i & 2) ? casters.maximum.y : casters.minimum.y,
-                                                              (i & 4) ? casters.maximum.z : casters.minimum.z) - eye));
+        farthest = std::max(farthest, glm::length(dvec3((i & 1) ? casters.maximum.x : casters.minimum.x,
+                                                        (i & 2) ? casters.maximum.y : casters.minimum.y,
+                                                        (i & 4) ? casters.maximum.z : casters.minimum.z) - eye));
+    // In steps of a quarter octave of the scene's size, so that small moves change nothing; between the steps lies the centre
+    // of the scene, a place where cameras like to be.
+    const double diagonal = glm::length(casters.extent());
+    if (!(diagonal > 0)) return slices;
+    farthest = diagonal * std::exp2((std::ceil(4.0 * std::log2(farthest / diagonal) + 0.5) - 0.5) / 4.0);
     const double nearDistance = std::max(double(view.cameraPosition.w), 1e-3 * farthest);
     if (!(farthest > 2.0 * nearDistance)) return slices;
-    // In steps of a quarter octave, so that small moves change nothing.
-    farthest = std::exp2(std::ceil(4.0 * std::log2(farthest)) / 4.0);
     // Half the diagonal of the view at distance 1, from the unjittered scale of the matrix: |clip row| = 1/tan.
     const dmat4 clip(view.clipFromRender);
     const dvec4 w(clip[0][3], clip[1][3], clip[2][3], clip[3][3]);
@@ -127,7 +130,8 @@ std::vector<Slice> viewSlices(const gpu::ViewData& view, const Bounds& casters, 
         r -= forward * glm::dot(r, forward);
         return 1.0 / std::max(glm::length(r), 1e-12);
     };
-    const double tanX = tangent(0), tanY = tangent(1), diagonal2 = tanX * tanX + tanY * tanY;
+    // Rounded up: the matrix is in single precision and its noise turns with the camera.
+    const double tanX = tangent(0), tanY = tangent(1), diagonal2 = (std::round((tanX * tanX + tanY * tanY) * 4096.0) + 1.0) / 4096.0;
     double begin = 0;
     for (int i = 1; i < settings.cascades; ++i) {
         const double part = double(i) / settings.cascades;
