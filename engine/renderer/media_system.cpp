@@ -1,7 +1,7 @@
 #include "renderer/media_system.h"
 
 #include <algorithm>
-#include <cstring>
+#include <bit>
 
 #include "framegraph/hash.h"
 #include "gl/buffer.h"
@@ -43,7 +43,14 @@ bool positive(const vec4& v) { return v.x > 0 || v.y > 0 || v.z > 0; }
 
 } // namespace
 
+void MediaSystem::registerSettings(SettingsRegistry& registry) {
+    registry.add({mediaSettingsTable(), &settings_});
+    registry.addPreset(mediaPresets());
+}
+
 MediaSystem::MediaSystem(fg::Executor& executor) : executor_(executor), atlas_(executor) {
+    SettingsRegistry defaults;
+    defaults.add({mediaSettingsTable(), &settings_});
     const std::vector<vec4> block = blackbodyBlock();
     blackbodyBytes_ = block.size() * sizeof(vec4);
     blackbodyBuffer_ = executor_.registerBuffer("media.blackbody", gl::Buffer("media.blackbody", std::as_bytes(std::span(block))));
@@ -95,7 +102,7 @@ Bounds MediaSystem::bounds() const {
 
 std::vector<PlacedMedium> MediaSystem::choose(const MediaFrameRequest& request, MediaFrame& frame) const {
     if (!sceneHasMedia_) frame.skipReason = kNoMedium;
-    else if (!request.settings->enabled) frame.skipReason = kSwitchedOff;
+    else if (!settings_.enabled) frame.skipReason = kSwitchedOff;
     else if (placed_.empty()) frame.skipReason = kNoEffect;
     if (frame.skipReason) return {};
     const std::vector<MediumUse> uses = classifyMedia(placed_, {&request.view->data, request.surfaces, request.lights});
@@ -103,7 +110,7 @@ std::vector<PlacedMedium> MediaSystem::choose(const MediaFrameRequest& request, 
     bool inView = false;
     for (size_t i = 0; i < placed_.size(); ++i) {
         const bool seen = uses[i] == MediumUse::InView;
-        if (uses[i] != MediumUse::Dropped || request.keepUnseen || !request.settings->dropUnseen) chosen.push_back(placed_[i]);
+        if (uses[i] != MediumUse::Dropped || request.keepUnseen || !settings_.dropUnseen) chosen.push_back(placed_[i]);
         inView = inView || seen;
         frame.scatters = frame.scatters || (seen && positive(placed_[i].data.scattering));
         frame.emits = frame.emits || (seen && (positive(placed_[i].data.emission) || placed_[i].data.emission.w > 0));
@@ -114,7 +121,6 @@ std::vector<PlacedMedium> MediaSystem::choose(const MediaFrameRequest& request, 
 }
 
 gpu::MediaHeader MediaSystem::makeHeader(const MediaFrameRequest& request, std::vector<PlacedMedium>& chosen) {
-    const MediaSettings& settings = *request.settings;
     const bool converge = (request.view->data.flags & gpu::kViewConverge) != 0;
     gpu::MediaHeader header{};
     std::vector<std::string> notes;
@@ -123,12 +129,12 @@ gpu::MediaHeader MediaSystem::makeHeader(const MediaFrameRequest& request, std::
         if (std::find(notes_.begin(), notes_.end(), note) == notes_.end()) notes_.push_back(note);
     header.mediumCount = uint32_t(chosen.size());
     header.gridCount = uint32_t(std::count_if(chosen.begin(), chosen.end(), [](const PlacedMedium& m) { return m.data.kind == gpu::kMediumGrid; }));
-    const bool exact = settings.integration == MediaIntegration::Exact || (settings.integration == MediaIntegration::Auto && converge);
-    const bool marchToLights = settings.lightOpticalDepth == LightOpticalDepth::Exact || (settings.lightOpticalDepth == LightOpticalDepth::Auto && converge);
+    const bool exact = settings_.integration == MediaIntegration::Exact || (settings_.integration == MediaIntegration::Auto && converge);
+    const bool marchToLights = settings_.lightOpticalDepth == LightOpticalDepth::Exact || (settings_.lightOpticalDepth == LightOpticalDepth::Auto && converge);
     header.flags = (exact ? gpu::kMediaExact : 0u) | (marchToLights ? 0u : gpu::kMediaLightDepthVolume);
-    header.stepVoxels = settings.stepScale;
-    header.analyticSteps = uint32_t(settings.steps);
-    header.minTransmittance = settings.minTransmittance;
+    header.stepVoxels = settings_.stepScale;
+    header.analyticSteps = uint32_t(settings_.steps);
+    header.minTransmittance = settings_.minTransmittance;
     return header;
 }
 
@@ -142,13 +148,12 @@ void MediaSystem::layOut(const MediaFrameRequest& request, const std::vector<Pla
     }
     if (grids.empty()) frame.depthSkipReason = "no grid medium in view or on a light's path";
     else if (!volumes) frame.depthSkipReason = "grids are marched for every point (media.lightOpticalDepth)";
-    const MediaSettings& settings = *request.settings;
-    layout_ = layOutOpticalDepth(frame.depthSkipReason ? std::span<const gpu::LightData>{} : request.lights, grids, settings.opticalDepthResolution, settings.opticalDepthLights);
+    layout_ = layOutOpticalDepth(frame.depthSkipReason ? std::span<const gpu::LightData>{} : request.lights, grids, settings_.opticalDepthResolution, settings_.opticalDepthLights);
     if (!frame.depthSkipReason && layout_.volumeCount == 0) frame.depthSkipReason = "no light shines through a grid";
     // At least one entry: an empty buffer cannot be bound.
     if (layout_.views.empty()) layout_.views.emplace_back();
     uploadViews();
-    opticalDepthKey_ = fg::mixHash(hashBytes(views_, key), uint64_t(settings.stepScale * 1024.0f));
+    opticalDepthKey_ = fg::mixHash(hashBytes(views_, key), std::bit_cast<uint32_t>(settings_.stepScale));
 }
 
 fg::StaticBuffer MediaSystem::upload(const char* name, std::span<const std::byte> data, std::vector<std::byte>& last, fg::StaticBuffer buffer, Version& version) {
@@ -177,9 +182,10 @@ void MediaSystem::uploadViews() {
 }
 
 MediaFrame MediaSystem::beginFrame(fg::FrameGraph& graph, const MediaFrameRequest& request) {
-    CHECK(request.view && request.settings);
+    CHECK(request.view);
     CHECK(scene_, "update() comes before beginFrame()");
     MediaFrame frame;
+    frame.settings = &settings_;
     std::vector<PlacedMedium> chosen = choose(request, frame);
     if (frame.skipReason) {
         frame.marchSkipReason = frame.depthSkipReason = frame.skipReason;

@@ -26,7 +26,6 @@ struct MediaFrameRequest {
     const ViewResources* view = nullptr;
     std::span<const Bounds> surfaces;         // render space, of everything drawn
     std::span<const gpu::LightData> lights;   // as in `Lights`, environment samples included
-    const MediaSettings* settings = nullptr;
     bool keepUnseen = false;                  // for techniques that carry light through media that the view cannot meet
 };
 
@@ -38,6 +37,7 @@ struct MediaFrame {
     const char* depthSkipReason = nullptr; // why no light has a volume of optical depth
     bool scatters = false;           // some medium in view does
     bool emits = false;
+    const MediaSettings* settings = nullptr; // the system's
 };
 
 class MediaSystem {
@@ -47,6 +47,10 @@ public:
     ~MediaSystem();
     MediaSystem(const MediaSystem&) = delete;
     MediaSystem& operator=(const MediaSystem&) = delete;
+
+    /// Adds `media.*` with its presets; the values live here.
+    void registerSettings(SettingsRegistry& registry);
+    [[nodiscard]] MediaSettings& settings() { return settings_; }
 
     /// Places the media and uploads grids that are new. `scene` must live until the next call.
     /// Errors: more grid data than the GPU holds.
@@ -73,6 +77,7 @@ private:
     fg::StaticBuffer upload(const char* name, std::span<const std::byte> data, std::vector<std::byte>& last, fg::StaticBuffer buffer, Version& version);
 
     fg::Executor& executor_;
+    MediaSettings settings_{};
     MediaAtlas atlas_;
     std::vector<PlacedMedium> placed_;
     SceneVersions seenVersions_;

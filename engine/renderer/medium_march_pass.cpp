@@ -97,7 +97,7 @@ MediumMarch addUpsamplePass(fg::FrameGraph& graph, const MediaFrame& frame, cons
 
 } // namespace
 
-MediumMarch addMediumMarchPass(fg::FrameGraph& graph, const MediaFrame& frame, const MediumMarchInputs& inputs, const MediaSettings& settings) {
+MediumMarch addMediumMarchPass(fg::FrameGraph& graph, const MediaFrame& frame, const MediumMarchInputs& inputs) {
     const bool inScatter = inputs.inScatter && frame.scatters && inputs.lights.lightCount > 0;
     const bool emission = inputs.emission && frame.emits;
     const char* skip = frame.marchSkipReason;
@@ -106,7 +106,7 @@ MediumMarch addMediumMarchPass(fg::FrameGraph& graph, const MediaFrame& frame, c
         skip = !inputs.inScatter && !inputs.emission ? "no term is wanted that media add light to"
                : frame.scatters                      ? "media add no light: LVE is not wanted or there is no light in the scene"
                                                      : "no medium in view scatters or emits";
-    const gpu::MarchParams params = makeParams(inputs, settings, inScatter, emission);
+    const gpu::MarchParams params = makeParams(inputs, *frame.settings, inScatter, emission);
     const int factor = int(params.factor);
     const MediumMarch march = graph.addPass<MarchData>("media.march",
         [&](fg::Builder& builder, MarchData& data) {

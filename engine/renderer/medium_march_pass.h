@@ -20,6 +20,6 @@ struct MediumMarch {
     fg::TextureHandle emission;      // nits: the media's part of LE
 };
 
-MediumMarch addMediumMarchPass(fg::FrameGraph& graph, const MediaFrame& frame, const MediumMarchInputs& inputs, const MediaSettings& settings);
+MediumMarch addMediumMarchPass(fg::FrameGraph& graph, const MediaFrame& frame, const MediumMarchInputs& inputs);
 
 } // namespace tyndall

@@ -20,7 +20,8 @@ vec3 oneMinusExpOverX(vec3 x) {
 
 /// 1 - exp(-x) for x >= 0 without cancellation.
 float oneMinusExp(float x) {
-    return x * oneMinusExpOverX(min(x, 1e10));
+    x = min(x, 64.0); // 1 to single precision from there on
+    return x * oneMinusExpOverX(x);
 }
 
 /// -log(1 - z) / z for z < 1, of either sign; 1 at 0.

@@ -1,0 +1,3 @@
+tyndall_test(shaders_media LABEL shaders
+  SOURCES media_compute.cpp media_depth_test.cpp media_functions_test.cpp media_march_test.cpp
+  DEPENDS tyndall_gl_test_support Tyndall::renderer)
