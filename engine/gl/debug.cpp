@@ -9,7 +9,8 @@
 namespace tyndall::gl {
 namespace {
 
-// Every row with its reason; nothing of high severity may stand here.
+// Every row with its reason. What is of high severity is never dropped, but for the compiler's messages: those come back from the
+// compilation itself, with files and lines (Program::build, Program::warnings).
 constexpr HarmlessMessage kHarmless[] = {
     {"", GL_DEBUG_SOURCE_APPLICATION, GL_DEBUG_TYPE_PUSH_GROUP, 0, "", "our own debug group opens"},
     {"", GL_DEBUG_SOURCE_APPLICATION, GL_DEBUG_TYPE_POP_GROUP, 0, "", "our own debug group closes"},
@@ -21,9 +22,8 @@ constexpr HarmlessMessage kHarmless[] = {
      "a read-back waits for the drawing before it, which is what a read-back is for"},
     {"NVIDIA", GL_DEBUG_SOURCE_API, GL_DEBUG_TYPE_PERFORMANCE, 131186, "", "a buffer that is read back moves to the host"},
     {"NVIDIA", GL_DEBUG_SOURCE_API, GL_DEBUG_TYPE_PERFORMANCE, 131218, "", "a program is compiled again for the state of its first draw"},
-    {"Mesa", GL_DEBUG_SOURCE_SHADER_COMPILER, GL_DEBUG_TYPE_OTHER, 0, "", "statistics of the shader compiler"},
-    {"Intel", GL_DEBUG_SOURCE_SHADER_COMPILER, GL_DEBUG_TYPE_OTHER, 0, "", "statistics of the shader compiler"},
-    {"AMD", GL_DEBUG_SOURCE_SHADER_COMPILER, GL_DEBUG_TYPE_OTHER, 0, "", "statistics of the shader compiler"},
+    {"", GL_DEBUG_SOURCE_SHADER_COMPILER, GL_DONT_CARE, 0, "",
+     "errors and warnings of a shader are returned by its compilation, and statistics of the compiler mean nothing"},
 };
 
 constexpr size_t kKeptMessages = 64;
@@ -92,7 +92,8 @@ struct DebugLog::State {
         const std::string sentence = fmt::format("GL {} {}{}{}: {}", typeName(type), id, place.empty() ? "" : " in ", place, text);
         {
             std::lock_guard lock(mutex);
-            if (severity != Severity::High && isHarmless(driver, source, type, id, text)) {
+            const bool mayDrop = severity != Severity::High || source == GL_DEBUG_SOURCE_SHADER_COMPILER;
+            if (mayDrop && isHarmless(driver, source, type, id, text)) {
                 ++dropped;
                 return;
             }

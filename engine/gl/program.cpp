@@ -129,6 +129,8 @@ Result<Program> PendingProgram::finish() {
         GLint type = 0;
         glGetShaderiv(stage.shader, GL_SHADER_TYPE, &type);
         collectIdentifiers(stage.source.text, program.identifiers_);
+        const std::string remarks = mapShaderMessages(driverLog(stage.shader, glGetShaderiv, glGetShaderInfoLog), stage.source);
+        if (!remarks.empty()) program.warnings_ += (program.warnings_.empty() ? "" : "\n") + remarks;
         if (GLenum(type) != GL_COMPUTE_SHADER) continue;
         GLint size[3] = {};
         glGetProgramiv(self.object_.id(), GL_COMPUTE_WORK_GROUP_SIZE, size);

@@ -70,6 +70,9 @@ public:
     [[nodiscard]] uvec3 localSize() const { return localSize_; }
     [[nodiscard]] bool isCompute() const { return localSize_.x > 0; }
 
+    /// What the driver's compiler remarked, with files and lines; empty where it had nothing to say.
+    [[nodiscard]] const std::string& warnings() const { return warnings_; }
+
     /// Everything active, in the driver's order.
     [[nodiscard]] std::span<const ProgramResource> resources() const { return resources_; }
     /// Null where the program has no such active resource.
@@ -86,6 +89,7 @@ private:
     friend class PendingProgram;
     Object object_;
     std::string name_;
+    std::string warnings_;
     uvec3 localSize_{0};
     std::vector<ProgramResource> resources_;
     std::vector<uint64_t> identifiers_; // hashes, sorted

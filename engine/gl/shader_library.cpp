@@ -150,6 +150,8 @@ struct ShaderLibrary::State {
             return false;
         }
         entry.program = std::move(*built);
+        if (!entry.program.warnings().empty())
+            log::debug(fmt::format("shader '{}':\n{}", entry.program.name(), entry.program.warnings()));
         return true;
     }
 

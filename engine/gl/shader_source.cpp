@@ -78,7 +78,7 @@ public:
         const std::optional<std::string> text = read_(path);
         if (!text) return Error{from.empty() ? fmt::format("shader '{}' does not exist", path) : fmt::format("{}: no shader file '{}'", from, path)};
         stack_.push_back(path);
-        out_ += fmt::format("#line 1 {}\n", number);
+        addLineDirective(number, 1);
         const std::vector<std::string_view> lines = splitLines(*text);
         std::vector<Branch> branches;
         bool inComment = false;
@@ -101,6 +101,9 @@ private:
         files_.push_back(path);
         return files_.size() - 1;
     }
+
+    /// The next line is line `line` of file `number`.
+    void addLineDirective(size_t number, size_t line) { out_ += fmt::format("#line {}\n", number * kLinesPerFile + line); }
 
     static void follow(const Directive& directive, std::span<const std::string_view> following, std::vector<Branch>& branches) {
         const std::string_view word = firstWord(directive.rest);
@@ -142,7 +145,7 @@ private:
             return Error{fmt::format("{}: '{}' is no include: write #include \"folder/file.glsl\", relative to shaders/", place, trimmed(lines[i]))};
         const bool certain = std::ranges::find(branches, Branch::Unknown) == branches.end() && uncertainIncludes_ == 0;
         if (Result<void> added = include(std::string(directive.rest.substr(1, close - 1)), place, certain); !added) return added;
-        out_ += fmt::format("#line {} {}\n", i + 2, number);
+        addLineDirective(number, i + 2);
         return {};
     }
 
@@ -177,14 +180,15 @@ Result<ExpandedShader> expandShader(const std::string& path, std::span<const Sha
 }
 
 std::string mapShaderMessages(std::string_view driverLog, const ExpandedShader& shader) {
-    // Mesa: "0:12(5): error: …"; NVIDIA: "0(12) : error C1008: …"; others: "ERROR: 0:12: …".
-    static const std::regex kMesa(R"(^(\d+):(\d+)\((\d+)\):\s*(.*)$)");
-    static const std::regex kNvidia(R"(^(\d+)\((\d+)\)\s*:\s*(.*)$)");
-    static const std::regex kOthers(R"(^(ERROR|WARNING):\s*(\d+):(\d+):\s*(.*)$)");
-    const auto file = [&](const std::string& number) {
-        size_t index = 0;
-        std::from_chars(number.data(), number.data() + number.size(), index);
-        return index < shader.files.size() ? shader.files[index] : "source " + number;
+    // Mesa: "0:12(5): error: …"; NVIDIA: "0(12) : error C1008: …"; others: "ERROR: 0:12: …". The first number is the source's.
+    static const std::regex kMesa(R"(^\d+:(\d+)\((\d+)\):\s*(.*)$)");
+    static const std::regex kNvidia(R"(^\d+\((\d+)\)\s*:\s*(.*)$)");
+    static const std::regex kOthers(R"(^(ERROR|WARNING):\s*\d+:(\d+):\s*(.*)$)");
+    const auto place = [&](const std::string& number) {
+        size_t line = 0;
+        std::from_chars(number.data(), number.data() + number.size(), line);
+        const size_t file = line / kLinesPerFile;
+        return file < shader.files.size() ? fmt::format("{}:{}", shader.files[file], line % kLinesPerFile) : "line " + number;
     };
     std::string mapped;
     for (std::string_view view : splitLines(driverLog)) {
@@ -192,9 +196,9 @@ std::string mapShaderMessages(std::string_view driverLog, const ExpandedShader& 
         if (line.empty() || line.front() == '\0') continue;
         if (!mapped.empty()) mapped += '\n';
         std::smatch match;
-        if (std::regex_match(line, match, kMesa)) mapped += fmt::format("{}:{}:{}: {}", file(match[1]), match[2].str(), match[3].str(), match[4].str());
-        else if (std::regex_match(line, match, kNvidia)) mapped += fmt::format("{}:{}: {}", file(match[1]), match[2].str(), match[3].str());
-        else if (std::regex_match(line, match, kOthers)) mapped += fmt::format("{}:{}: {}: {}", file(match[2]), match[3].str(), match[1].str(), match[4].str());
+        if (std::regex_match(line, match, kMesa)) mapped += fmt::format("{}:{}: {}", place(match[1]), match[2].str(), match[3].str());
+        else if (std::regex_match(line, match, kNvidia)) mapped += fmt::format("{}: {}", place(match[1]), match[2].str());
+        else if (std::regex_match(line, match, kOthers)) mapped += fmt::format("{}: {}: {}", place(match[2]), match[1].str(), match[3].str());
         else mapped += line;
     }
     return mapped;

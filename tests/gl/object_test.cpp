@@ -96,14 +96,17 @@ TEST_P(ObjectTest, DebugGroupsAloneSayNothing) {
     { const DebugGroup group("quiet"); }
     for (Severity severity : {Severity::Notification, Severity::Low, Severity::Medium, Severity::High})
         EXPECT_EQ(context().debugLog().count(severity), 0u) << severityName(severity);
-    EXPECT_GE(context().debugLog().dropped(), 0u);
+    EXPECT_GE(context().debugLog().dropped(), 2u) << "the driver reports both ends of a group";
 }
 
 TEST(DebugTable, DropsNothingWithoutAReason) {
     for (const HarmlessMessage& row : harmlessMessages()) {
         EXPECT_GT(std::string_view(row.reason).size(), 10u);
         EXPECT_TRUE(row.id != 0 || row.source != GL_DONT_CARE || row.text[0] != '\0') << "a row may not match everything";
-        EXPECT_NE(row.type, GLenum(GL_DEBUG_TYPE_ERROR));
+        if (row.source != GL_DEBUG_SOURCE_SHADER_COMPILER) {
+            EXPECT_NE(row.type, GLenum(GL_DEBUG_TYPE_ERROR));
+            EXPECT_NE(row.type, GLenum(GL_DONT_CARE));
+        }
     }
 }
 

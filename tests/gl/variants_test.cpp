@@ -1,0 +1,38 @@
+// Compiles every program that C++ can ask for. An executable of its own, because it is the slowest of the GL tests.
+
+#include <fmt/format.h>
+
+#include <chrono>
+
+#include "gl/gl_fixture.h"
+#include "gl/shader_library.h"
+
+namespace tyndall::gl {
+namespace {
+
+class VariantsTest : public test::GlTest {};
+TYNDALL_GL_TESTS(VariantsTest);
+
+TEST_P(VariantsTest, EveryListedVariantCompilesWithoutARemark) {
+    ShaderLibrary library;
+    int count = 0;
+    double slowest = 0;
+    std::string slowestName;
+    library.variants().forEachVariant([&](const ProgramRequest& request) {
+        const auto begin = std::chrono::steady_clock::now();
+        const Result<const Program*> program = library.program(request);
+        const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+        if (seconds > slowest) slowestName = request.describe();
+        slowest = std::max(slowest, seconds);
+        EXPECT_TRUE(program.ok()) << (program ? "" : program.message());
+        if (program) {
+            EXPECT_EQ((*program)->warnings(), "") << request.describe();
+        }
+        ++count;
+    });
+    EXPECT_GT(count, 0);
+    fmt::print("{} variants; the slowest, {}, took {:.2f} s\n", count, slowestName, slowest);
+}
+
+} // namespace
+} // namespace tyndall::gl
