@@ -29,6 +29,6 @@ struct BlackbodyTable {
 };
 
 /// CHECKs: at least 2 entries.
-[[nodiscard]] BlackbodyTable makeBlackbodyTable(int entries = 256);
+[[nodiscard]] BlackbodyTable makeBlackbodyTable(int entries = 1024);
 
 } // namespace tyndall
