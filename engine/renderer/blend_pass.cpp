@@ -117,7 +117,9 @@ void addShadePass(fg::FrameGraph& graph, const BlendList& list, const BlendInput
     if (inScatter && inputs.media.count > 0) images.replace(Term::LVE, pass.inScatter);
 }
 
-void addAttenuatePass(fg::FrameGraph& graph, const BlendList& list, const BlendInputs& inputs, TermImageHandle& image) {
+void addAttenuatePass(fg::FrameGraph& graph, const BlendList& list, BlendInputs inputs, TermImageHandle& image) {
+    // Media that are only on the lights' ways take nothing from the ray.
+    if (!inputs.transmittance || graph.isAbsent(inputs.transmittance)) inputs.media.count = 0;
     const AttenuateData& pass = graph.addPass<AttenuateData>("blend.indirect",
         [&](fg::Builder& builder, AttenuateData& data) {
             data.common = readCommon(builder, list, inputs);

@@ -43,8 +43,9 @@ float rayDistanceFromDepth(vec2 pixel, float depth) {
     if (!(depth > 0.0)) return kSkyDistance;
     Ray ray = cameraRay(pixel);
     if (viewIsOrthographic()) {
-        vec4 point = view.renderFromClip * vec4(pixel * view.size.zw * 2.0 - 1.0, depth, 1.0);
-        return dot(point.xyz / point.w - ray.origin, ray.direction);
+        // Depth falls evenly from 1 at the camera's plane. From its gradient, not from positions: see cameraRay().
+        vec3 gradient = vec3(view.clipFromRender[0].z, view.clipFromRender[1].z, view.clipFromRender[2].z);
+        return (depth - 1.0) / dot(gradient, ray.direction);
     }
     float alongView = view.cameraPosition.w / depth; // reversed depth with the far plane at infinity
     return alongView / dot(ray.direction, view.cameraForward.xyz);
