@@ -125,6 +125,27 @@ TEST_P(ExecutorComputeTest, AShaderMayDecideHowMuchIsDispatched) {
     EXPECT_EQ(total, 7u * 2u * 3u);
 }
 
+TEST_P(ExecutorComputeTest, AShaderSeesTheLengthThatWasDeclared) {
+    library().addSource("test/length.comp", "layout(local_size_x = 1) in;\nlayout(std430) readonly buffer Numbers { uint numbers[]; };\n"
+                                            "layout(std430) buffer Total { uint total[]; };\n"
+                                            "void main() { total[0] = uint(numbers.length()) + 0u * numbers[0]; }\n");
+    struct Lengths {
+        BufferHandle numbers, total;
+    };
+    begin();
+    const Lengths& upload = graph().addPass<Lengths>(
+        "upload", [&](Builder& b, Lengths& d) { d.numbers = b.create("numbers", BufferDesc{20}, Access::TransferWrite); },
+        [](const Lengths& d, PassContext& c) { c.clearBuffer(d.numbers, 1); });
+    const Lengths& count = graph().addPass<Lengths>(
+        "count", [&](Builder& b, Lengths& d) { d.numbers = b.read(upload.numbers), d.total = b.create("total", BufferDesc{4}); },
+        [](const Lengths& d, PassContext& c) { c.compute("test/length.comp").bind("Numbers", d.numbers).bind("Total", d.total).dispatch(1); });
+    graph().markOutput(count.total);
+    run();
+    uint32_t total = 0;
+    std::memcpy(&total, executor().readBuffer(count.total).data(), 4);
+    EXPECT_EQ(total, 5u) << "20 bytes, however the storage is rounded";
+}
+
 TEST_P(ExecutorComputeTest, UniformBlocksComeByName) {
     library().addSource("test/block.comp", "layout(local_size_x = 8, local_size_y = 8) in;\n"
                                            "layout(std140) uniform Params { vec4 first; vec4 second; };\n"

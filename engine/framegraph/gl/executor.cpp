@@ -249,12 +249,13 @@ gl::Buffer& Executor::buffer(StaticBuffer buffer) { return impl_->statics_.buffe
 Image Executor::readImage(TextureHandle handle, int layer, int mip) {
     const Storage& storage = impl_->readable(handle.resource, handle.version, "readImage()");
     gl::ReadBack readBack = gl::ReadBack::start(storage.texture, mip);
-    if (!isIntegerFormat(storage.format)) return gl::takeImage(readBack, layer);
+    const Format format = impl_->graph_.desc(handle).format;
+    if (!isIntegerFormat(format)) return gl::takeImage(readBack, layer);
     const gl::TextureRegion region = readBack.region();
     CHECK(layer >= 0 && layer < region.depth, fmt::format("layer {} of a texture with {}", layer, region.depth));
     Image image(region.width, region.height, readBack.channels());
     const std::vector<uint32_t> values = readBack.takeIntegers();
-    const bool isSigned = storage.format == Format::R32I;
+    const bool isSigned = format == Format::R32I;
     const size_t row = size_t(image.width) * size_t(image.channels);
     for (int y = 0; y < image.height; ++y)
         for (size_t x = 0; x < row; ++x) {

@@ -148,12 +148,14 @@ void GlPassContext::bindImage(const gl::ProgramResource& image, const Storage& s
     markBound(image);
 }
 
-void GlPassContext::bindBlock(const gl::ProgramResource& block, const gl::Buffer& buffer) {
+/// `bytes` is what the shader may see: its array's length() follows from it.
+void GlPassContext::bindBlock(const gl::ProgramResource& block, const gl::Buffer& buffer, uint64_t bytes) {
     const bool uniform = block.kind == gl::ResourceKind::UniformBlock;
-    CHECK(int64_t(buffer.bytes()) >= block.bytes,
-          fmt::format("pass '{}' binds {} bytes to the {} '{}' of '{}', which has {}", passName(), buffer.bytes(),
+    const uint64_t whole = (bytes + 15) / 16 * 16; // some drivers round a block's size up to this
+    CHECK(int64_t(whole) >= block.bytes,
+          fmt::format("pass '{}' binds {} bytes to the {} '{}' of '{}', which has {}", passName(), bytes,
                       gl::resourceKindName(block.kind), block.name, program_->name(), block.bytes));
-    glBindBufferBase(uniform ? GL_UNIFORM_BUFFER : GL_SHADER_STORAGE_BUFFER, GLuint(block.binding), buffer.id());
+    glBindBufferRange(uniform ? GL_UNIFORM_BUFFER : GL_SHADER_STORAGE_BUFFER, GLuint(block.binding), buffer.id(), 0, GLsizeiptr(bytes));
     markBound(block);
 }
 
@@ -195,7 +197,10 @@ void GlPassContext::bindBuffer(const char* name, BufferHandle handle) {
           fmt::format("pass '{}' binds a buffer to '{}' of '{}', which is a {}", passName(), name, program_->name(),
                       gl::resourceKindName(resource->kind)));
     check(handle.resource, handle.version, uniform ? Touch::UniformBlock : Touch::ReadStorage, name);
-    bindBlock(*resource, world_.storageOf(handle.resource, handle.version).buffer);
+    const gl::Buffer& buffer = world_.storageOf(handle.resource, handle.version).buffer;
+    uint64_t bytes = desc(handle).bytes;
+    if (isAbsent(handle)) bytes = std::min(std::max(bytes, uint64_t(resource->bytes)), StorageSet::kAbsentBytes);
+    bindBlock(*resource, buffer, bytes);
 }
 
 void GlPassContext::bindStaticBuffer(const char* name, StaticBuffer buffer) {
@@ -204,7 +209,8 @@ void GlPassContext::bindStaticBuffer(const char* name, StaticBuffer buffer) {
     if (!resource) return;
     CHECK(resource->kind == gl::ResourceKind::UniformBlock || resource->kind == gl::ResourceKind::StorageBlock,
           fmt::format("pass '{}' binds a static buffer to '{}' of '{}', which is no block", passName(), name, program_->name()));
-    bindBlock(*resource, world_.statics.buffer(buffer.id).storage.buffer);
+    const gl::Buffer& storage = world_.statics.buffer(buffer.id).storage.buffer;
+    bindBlock(*resource, storage, storage.bytes());
 }
 
 void GlPassContext::uniformBlock(const char* block, const void* data, size_t bytes) {

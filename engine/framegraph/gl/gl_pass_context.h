@@ -84,7 +84,7 @@ private:
     [[nodiscard]] bool writesByShader(uint32_t resource) const;
     void bindSampler(const gl::ProgramResource& sampler, Storage& storage, const gl::SamplerSpec* spec, int32_t mip, int32_t layer);
     void bindImage(const gl::ProgramResource& image, const Storage& storage, bool writes, int32_t mip, int32_t layer);
-    void bindBlock(const gl::ProgramResource& block, const gl::Buffer& buffer);
+    void bindBlock(const gl::ProgramResource& block, const gl::Buffer& buffer, uint64_t bytes);
     void aroundClear(uint32_t resource, bool isBuffer, bool before);
     void prepareDraw(GLuint vertexArray);
     void applyState();

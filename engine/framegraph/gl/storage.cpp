@@ -11,8 +11,8 @@ namespace tyndall::fg {
 
 Storage::Storage(std::string_view name, const TextureDesc& desc) : texture(name, glSpec(desc)), format(desc.format) {}
 
-// Sizes are rounded up to what clearing needs.
-Storage::Storage(std::string_view name, const BufferDesc& desc) : buffer(name, (desc.bytes + 3) / 4 * 4) {}
+// Sizes are rounded up: clearing needs 4 bytes, and some drivers take a block for a multiple of 16.
+Storage::Storage(std::string_view name, const BufferDesc& desc) : buffer(name, (desc.bytes + 15) / 16 * 16) {}
 
 gl::Texture& Storage::view(int mip, int layer, bool as2D) {
     if (mip < 0 && layer < 0) return texture;
