@@ -82,12 +82,12 @@ Outcome Capture::renderFrame(int index) {
     FrameRequest request = session_->request();
     request.frameIndex = uint32_t(index);
     request.converge = options_.converge;
+    request.separateTerms = options_.hasAov("terms");
     if (!options_.converge) request.time += index * options_.timeStep; // a scene that converges stands still
     CaptureReport::Frame& frame = report_.frames.emplace_back();
     frame.startMicroseconds = processMicroseconds();
     Result<FrameResult> result = session_->renderer().renderFrame(request);
-    // What a mistyped technique, term or size causes is the command line's fault; all else was checked before.
-    if (!result.ok()) return wrongInput(result.message());
+    if (!result.ok()) return failed(result.message()); // the command line and the scene were checked before
     gl::Fence::insert().wait();
     frame.durationMicroseconds = processMicroseconds() - frame.startMicroseconds;
     result_ = std::move(*result);

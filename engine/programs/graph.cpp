@@ -27,7 +27,7 @@ Outcome runGraph(const GraphOptions& options, const GlobalOptions& global) {
     if (!format.ok()) return wrongInput("--format: " + format.message());
     std::unique_ptr<RenderSession> session;
     if (Outcome opened = RenderSession::open(options.render, global.progress(), nullptr, session); !opened.ok()) return opened;
-    if (const Result<FrameResult> frame = session->renderer().renderFrame(session->request()); !frame.ok()) return wrongInput(frame.message());
+    if (const Result<FrameResult> frame = session->renderer().renderFrame(session->request()); !frame.ok()) return failed(frame.message());
     const std::string text = fg::dump(session->renderer().graph(), *format);
     if (!options.output.empty()) return outcomeOf(writeFileAtomically(options.output, text), ExitStatus::Failed);
     if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size() || std::fflush(stdout) != 0) return failed("cannot write to standard output");

@@ -82,7 +82,9 @@ Outcome RenderSession::applySettings(const RenderOptions& options, const RenderP
     for (const std::string& assignment : options.assignments)
         if (Outcome done = assign(assignment, "--set: "); !done.ok()) return done;
     if (!options.gi.empty()) request_.gi = options.gi;
-    return {};
+    // What cannot be rendered in any scene is said before one is uploaded.
+    const Result<FramePlan> framePlan = makePlan(request_.gi, request_.terms, renderer_->techniques(), {true, true, true, true});
+    return framePlan.ok() ? Outcome{} : wrongInput("--gi " + request_.gi + ": " + framePlan.message());
 }
 
 Outcome RenderSession::open(const RenderOptions& options, ProgressStyle progress, CpuProfiler* profiler, std::unique_ptr<RenderSession>& session) {
@@ -101,6 +103,8 @@ Outcome RenderSession::open(const RenderOptions& options, ProgressStyle progress
         const Result<int> node = findCamera(opened->scene_, options.camera);
         if (!node.ok()) return wrongInput(node.message());
         request.cameraNode = *node;
+    } else if (opened->scene_.activeCamera == kNone) {
+        return wrongInput(fmt::format("'{}' has no camera: add a node with a \"camera\" and name it under \"camera\"", options.scene));
     }
     if (Outcome done = opened->startRenderer(options, *plan, profiler); !done.ok()) return done;
     if (Outcome done = opened->applySettings(options, *plan); !done.ok()) return done;
