@@ -39,18 +39,34 @@ size_t tooDeepAt(std::string_view text) {
     return std::string_view::npos;
 }
 
-/// Finds a key that an object has twice, which the parser would let pass.
-class DuplicateFinder {
+/// Finds a key that an object has twice, which the parser would let pass. A pass of its own: the parser's callback would
+/// do it in one, but takes quadratic time on long arrays of objects.
+class DuplicateFinder : public nlohmann::json_sax<Json> {
 public:
-    bool operator()(int, Json::parse_event_t event, Json& parsed) {
-        if (event == Json::parse_event_t::object_start) open_.emplace_back();
-        if (event == Json::parse_event_t::object_end && !open_.empty()) open_.pop_back();
-        if (event == Json::parse_event_t::key && !open_.empty() && duplicate.empty()) {
-            const std::string& key = parsed.get_ref<const std::string&>();
-            if (!open_.back().insert(key).second) duplicate = key;
-        }
+    bool start_object(std::size_t) override {
+        open_.emplace_back();
         return true;
     }
+    bool end_object() override {
+        open_.pop_back();
+        return true;
+    }
+    bool key(std::string& name) override {
+        if (open_.back().insert(name).second) return true;
+        duplicate = name;
+        return false; // ends the pass
+    }
+    bool null() override { return true; }
+    bool boolean(bool) override { return true; }
+    bool number_integer(number_integer_t) override { return true; }
+    bool number_unsigned(number_unsigned_t) override { return true; }
+    bool number_float(number_float_t, const std::string&) override { return true; }
+    bool string(std::string&) override { return true; }
+    bool binary(binary_t&) override { return true; }
+    bool start_array(std::size_t) override { return true; }
+    bool end_array() override { return true; }
+    bool parse_error(std::size_t, const std::string&, const nlohmann::detail::exception&) override { return false; }
+
     std::string duplicate;
 
 private:
@@ -75,9 +91,10 @@ Result<Json> parseJson(std::string_view text) {
         return Error{fmt::format("line {}, column {}: JSON nests deeper than {} levels", place.line, place.column, kMaxJsonDepth)};
     }
     try {
+        Json json = Json::parse(text.begin(), text.end());
         DuplicateFinder finder;
-        Json json = Json::parse(text.begin(), text.end(), std::ref(finder));
-        if (!finder.duplicate.empty()) return Error{fmt::format("key '{}' stands twice in one JSON object", finder.duplicate)};
+        Json::sax_parse(text.begin(), text.end(), &finder);
+        if (!finder.duplicate.empty()) return Error{fmt::format("key '{}' stands twice in one JSON object", finder.duplicate.substr(0, 60))};
         return json;
     } catch (const nlohmann::json::parse_error& error) {
         const Place place = placeOf(text, error.byte == 0 ? 0 : error.byte - 1);

@@ -402,9 +402,15 @@ TEST(GltfSamples, LightsExampleIsInCandelaAndLux) {
     const Scene scene = loadSample(REQUIRE_CONTENT("gltf/ext/Lights.glb"));
     ASSERT_EQ(scene.lights.size(), 4u);
     for (const Light& light : scene.lights) {
-        if (light.type == LightType::Point) EXPECT_EQ(light.intensity, 5);
-        if (light.name == "Spot") EXPECT_NEAR(light.outerConeAngle, 0.3926991, 1e-6);
-        if (light.type == LightType::Directional) EXPECT_NEAR(light.intensity, 1, 1e-6);
+        if (light.type == LightType::Point) {
+            EXPECT_EQ(light.intensity, 5);
+        }
+        if (light.name == "Spot") {
+            EXPECT_NEAR(light.outerConeAngle, 0.3926991, 1e-6);
+        }
+        if (light.type == LightType::Directional) {
+            EXPECT_NEAR(light.intensity, 1, 1e-6);
+        }
     }
 }
 
@@ -427,10 +433,14 @@ TEST(GltfSamples, AllOfThemAreSound) {
             const size_t count = mesh.positions.size();
             EXPECT_GT(count, 0u);
             for (const uint32_t index : mesh.indices) ASSERT_LT(index, count);
-            if (mesh.topology == MeshTopology::Triangles) ASSERT_EQ(mesh.normals.size(), count);
+            if (mesh.topology == MeshTopology::Triangles) {
+                ASSERT_EQ(mesh.normals.size(), count);
+            }
             for (const vec3& normal : mesh.normals) ASSERT_NEAR(glm::length(normal), 1, 1e-4);
             for (const auto& uvs : mesh.uvs) ASSERT_TRUE(uvs.empty() || uvs.size() == count);
-            if (scene.materialOf(mesh).normalTexture.texture != kNone) ASSERT_EQ(mesh.tangents.size(), count);
+            if (scene.materialOf(mesh).normalTexture.texture != kNone) {
+                ASSERT_EQ(mesh.tangents.size(), count);
+            }
         }
     }
 }
