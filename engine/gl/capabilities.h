@@ -38,7 +38,7 @@ struct Limits {
 
 /// Behaviour of a driver that the code avoids. Each has a row in the table in capabilities.cpp with driver and reason.
 enum class Workaround : uint32_t {
-    LateTimestamps = 0, // timestamps are taken when commands are recorded, so a command's end must be forced: see the table
+    FlushTimestamps = 0, // a timestamp must be flushed to be taken in its place among the commands
 };
 struct WorkaroundInfo {
     Workaround workaround;

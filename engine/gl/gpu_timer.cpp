@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "gl/context.h"
 
@@ -11,6 +12,23 @@ namespace tyndall::gl {
 GpuTimer::GpuTimer(int framesInFlight) : framesInFlight_(size_t(framesInFlight)) {
     CHECK(framesInFlight > 0, fmt::format("{} frames in flight", framesInFlight));
     available_ = currentCapabilities().limits.timestampBits > 0;
+    flushes_ = currentCapabilities().needs(Workaround::FlushTimestamps);
+}
+
+GpuTimer::GpuTimer(GpuTimer&& other) noexcept { *this = std::move(other); }
+
+GpuTimer& GpuTimer::operator=(GpuTimer&& other) noexcept {
+    if (this == &other) return *this;
+    framesInFlight_ = std::exchange(other.framesInFlight_, 0);
+    available_ = std::exchange(other.available_, false);
+    flushes_ = std::exchange(other.flushes_, false);
+    recording_ = std::exchange(other.recording_, false);
+    timing_ = std::exchange(other.timing_, false);
+    current_ = std::exchange(other.current_, {});
+    waiting_ = std::exchange(other.waiting_, {});
+    free_ = std::exchange(other.free_, {});
+    untimed_ = std::exchange(other.untimed_, 0);
+    return *this;
 }
 
 Object GpuTimer::takeQuery() {
@@ -26,6 +44,14 @@ Object GpuTimer::takeQuery() {
     return query;
 }
 
+/// A query that gets the time at which the GPU has done the commands before.
+Object GpuTimer::stamp() {
+    Object query = takeQuery();
+    glQueryCounter(query.id(), GL_TIMESTAMP);
+    if (flushes_) glFlush();
+    return query;
+}
+
 void GpuTimer::beginFrame(uint64_t frame) {
     CHECK(framesInFlight_ > 0, "the timer is empty");
     CHECK(!recording_, "the frame before has not ended");
@@ -38,10 +64,7 @@ void GpuTimer::beginFrame(uint64_t frame) {
 size_t GpuTimer::begin(std::string_view name) {
     CHECK(recording_, fmt::format("span '{}' begins outside a frame", name));
     Span span{std::string(name), {}, {}};
-    if (timing_) {
-        span.begin = takeQuery();
-        glQueryCounter(span.begin.id(), GL_TIMESTAMP);
-    }
+    if (timing_) span.begin = stamp();
     current_.spans.push_back(std::move(span));
     return current_.spans.size() - 1;
 }
@@ -50,8 +73,7 @@ void GpuTimer::end(size_t span) {
     CHECK(recording_ && span < current_.spans.size(), fmt::format("span {} ends, of {}", span, current_.spans.size()));
     if (!timing_) return;
     CHECK(!current_.spans[span].end, fmt::format("span '{}' ends twice", current_.spans[span].name));
-    current_.spans[span].end = takeQuery();
-    glQueryCounter(current_.spans[span].end.id(), GL_TIMESTAMP);
+    current_.spans[span].end = stamp();
 }
 
 void GpuTimer::endFrame() {

@@ -27,6 +27,8 @@ public:
     GpuTimer() = default;
     /// At most `framesInFlight` frames wait for their times; while so many do, further frames go untimed and are counted.
     explicit GpuTimer(int framesInFlight);
+    GpuTimer(GpuTimer&& other) noexcept;
+    GpuTimer& operator=(GpuTimer&& other) noexcept;
 
     /// Everything until endFrame() belongs to `frame`, a number of the caller's that comes back with the times.
     void beginFrame(uint64_t frame);
@@ -56,11 +58,13 @@ private:
         std::vector<Span> spans;
     };
     Object takeQuery();
+    Object stamp();
     FrameTimes read(Frame& frame);
     static bool complete(const Frame& frame);
 
     size_t framesInFlight_ = 0;
     bool available_ = false;
+    bool flushes_ = false;   // Workaround::FlushTimestamps
     bool recording_ = false; // between beginFrame and endFrame
     bool timing_ = false;    // and this frame is timed
     Frame current_;
