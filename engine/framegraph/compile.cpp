@@ -33,6 +33,7 @@ void Compiler::compile(FrameGraphImpl& graph, PersistentTable& persistent, Compi
     fillResources();
     findLifetimes();
     assignSlots();
+    listUntouchedOutputs();
     findBarriers();
 }
 

@@ -49,6 +49,7 @@ private:
     void useResource(uint32_t resource, uint32_t pass);
     void assignSlots();
     void listResourcesOf(uint32_t pass, bool acquire, Range& range);
+    void listUntouchedOutputs();
     void findBarriers();
     uint32_t takeSlot(const CompiledResource& resource);
     [[nodiscard]] uint32_t storageOf(uint32_t resource) const;

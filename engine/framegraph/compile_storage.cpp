@@ -145,6 +145,19 @@ void Compiler::assignSlots() {
     }
 }
 
+/// Nobody acquires these, so nobody would clear them before they are read back.
+void Compiler::listUntouchedOutputs() {
+    Range& range = result_->untouchedOutputs;
+    range.first = uint32_t(result_->resourceLists.size());
+    for (uint32_t i = 1; i < result_->resources.size(); ++i) {
+        const CompiledResource& resource = result_->resources[i];
+        const uint32_t held = resource.aliasOf != kNoIndex ? resource.aliasOf : i;
+        const bool untouched = resource.firstPass == kNoIndex && result_->resources[held].firstPass == kNoIndex;
+        if (resource.isOutput && untouched && result_->resources[held].clearFirst) result_->resourceLists.push_back(held);
+    }
+    range.count = uint32_t(result_->resourceLists.size()) - range.first;
+}
+
 /// Uses of one storage are ordered against each other, whatever the resources in it are called.
 uint32_t Compiler::storageOf(uint32_t index) const {
     const CompiledResource& resource = result_->resources[index];

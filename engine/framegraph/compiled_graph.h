@@ -91,6 +91,7 @@ struct CompiledGraph {
     std::vector<CompiledResource> resources;  // index 0 is the null resource
     std::vector<ResourceUse> uses;
     std::vector<uint32_t> resourceLists;
+    Range untouchedOutputs;                   // of resourceLists: outputs that must hold zeros and that no running pass uses
     std::vector<PoolSlot> slots;
     std::vector<std::string> errors;          // sentences; empty when the graph can run
 

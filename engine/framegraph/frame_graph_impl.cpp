@@ -67,8 +67,13 @@ BufferDesc FrameGraphImpl::desc(BufferHandle handle) const {
 }
 
 TextureHandle FrameGraphImpl::findTexture(std::string_view name) const {
-    for (uint32_t i = uint32_t(resources_.size()); i-- > 1;)
-        if (!resources_[i].isBuffer && resources_[i].name == name) return {i, versions_[resources_[i].latest].number};
+    for (uint32_t i = uint32_t(resources_.size()); i-- > 1;) {
+        if (resources_[i].isBuffer || resources_[i].name != name) continue;
+        const uint32_t number = versions_[resources_[i].latest].number;
+        // A history that nobody has written yet is known by its past.
+        if (resources_[i].origin == ResourceOrigin::HistoryCurrent && number == 0) return {resources_[i].previousHalf, 0};
+        return {i, number};
+    }
     return {};
 }
 

@@ -178,6 +178,8 @@ TEST_F(FrameGraphRecord, FindTextureGivesTheNewestVersionByName) {
     const Data& pass = graph.addPass<Data>("user", [&](Builder& b, Data& d) { d.out = b.write(x); }, kNothing);
     EXPECT_EQ(graph.findTexture("x"), pass.out);
     EXPECT_FALSE(graph.findTexture("nothing"));
+    const TextureHistory history = graph.historyTexture("h", kColor);
+    EXPECT_EQ(graph.findTexture("h"), history.previous) << "nothing else can be read yet";
 }
 
 TEST_F(FrameGraphRecord, PassesCannotNestAndAFailedSetupDoesNotPoisonTheNextFrame) {

@@ -107,6 +107,8 @@ Result<void> Executor::Impl::execute() {
 Result<void> Executor::Impl::runPasses() {
     storage_.assignSlots(compiled_);
     context_.beginFrame();
+    for (const uint32_t index : compiled_.list(compiled_.untouchedOutputs))
+        options_.poison ? world_.storageOf(index).poison() : world_.storageOf(index).clearToZero();
     timings_.beginFrame();
     if (options_.checkTexels) texelCheck_.begin(compiled_.passes.size());
     report_.passes.clear();

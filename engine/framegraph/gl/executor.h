@@ -11,6 +11,10 @@
 //   const fg::FrameReport& report = executor.report();
 //   Image picture = executor.readImage(image);              // outputs can be read until the next beginFrame()
 //
+// Textures of the graph are read bilinearly (trilinearly where they have mips) and clamped; integers and depth by the nearest texel;
+// a sampler2DShadow passes where the reference is at least the stored, reversed depth. Drawing sets the viewport to the whole first
+// target until the pass sets another. Depth runs from 0 to 1 without remapping; nothing is dithered, multisampled or scissored.
+//
 // Errors of pass authors (compile errors of the graph, binding what was not declared) are CHECK failures whose message has a
 // sentence for each. Errors in shaders come back from execute().
 

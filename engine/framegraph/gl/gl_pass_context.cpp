@@ -10,24 +10,16 @@
 
 namespace tyndall::fg {
 
-Storage& GlWorld::storageOf(uint32_t index) const {
-    const CompiledResource& resource = compiled.resources[index];
-    if (resource.aliasOf != kNoIndex) return storageOf(resource.aliasOf);
-    if (resource.slot != kNoIndex) return storage.slot(resource.slot);
-    if (resource.origin == ResourceOrigin::Imported)
-        return resource.isBuffer ? statics.buffer(resource.staticId).storage : statics.texture(resource.staticId).storage;
-    CHECK(resource.persistent != kNoIndex, fmt::format("'{}' has no storage: no pass that ran made it", resource.name));
-    return storage.persistent(persistentTable, resource.persistent, resource.name);
-}
-
-/// As above, but an absent version is a stand-in, and a history that a skipped pass left alone is its past.
-Storage& GlWorld::storageOf(uint32_t index, uint32_t number) const {
-    const uint32_t version = graph.contentVersion(graph.versionOf(index, number));
-    const VersionRecord& record = graph.versions()[version];
+Storage& GlWorld::storageAt(StoragePlace place, uint32_t index) const {
     const ResourceRecord& resource = graph.resources()[index];
-    if (record.absent) return resource.isBuffer ? storage.absentBuffer(poison) : storage.absentTexture(resource.texture, poison);
-    const bool past = resource.origin == ResourceOrigin::HistoryCurrent && record.writer == kNoIndex && number != 0;
-    return storageOf(past ? resource.previousHalf : index);
+    switch (place.kind) {
+    case PlaceKind::Absent: return resource.isBuffer ? storage.absentBuffer(poison) : storage.absentTexture(resource.texture, poison);
+    case PlaceKind::Slot: return storage.slot(place.index);
+    case PlaceKind::Persistent: return storage.persistent(persistentTable, place.index, resource.name);
+    case PlaceKind::Static: return resource.isBuffer ? statics.buffer(place.index).storage : statics.texture(place.index).storage;
+    case PlaceKind::None: break;
+    }
+    CHECK(false, fmt::format("'{}' has no storage: no pass that ran made it", resource.name));
 }
 
 GlPassContext::GlPassContext(const GlWorld& world) : world_(world) {

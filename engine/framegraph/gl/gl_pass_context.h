@@ -10,6 +10,7 @@
 #include "framegraph/gl/program_cache.h"
 #include "framegraph/gl/static_table.h"
 #include "framegraph/gl/storage.h"
+#include "framegraph/storage_place.h"
 #include "gl/buffer.h"
 #include "gl/framebuffer.h"
 #include "gl/sampler.h"
@@ -29,9 +30,12 @@ struct GlWorld {
     gl::UploadRing& ring;
     const bool& poison;
 
-    /// The storage that holds the resource in this frame. Not for absent ones.
-    [[nodiscard]] Storage& storageOf(uint32_t resource) const;
-    [[nodiscard]] Storage& storageOf(uint32_t resource, uint32_t version) const;
+    /// The storage that holds the resource in this frame. CHECKs that there is one.
+    [[nodiscard]] Storage& storageOf(uint32_t resource) const { return storageAt(placeOf(compiled, resource), resource); }
+    [[nodiscard]] Storage& storageOf(uint32_t resource, uint32_t version) const {
+        return storageAt(placeOf(graph, compiled, resource, version), resource);
+    }
+    [[nodiscard]] Storage& storageAt(StoragePlace place, uint32_t resource) const;
 };
 
 class GlPassContext final : public PassContext {
