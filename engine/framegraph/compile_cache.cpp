@@ -55,9 +55,11 @@ void Compiler::numberContents() {
     for (uint32_t v = 0; v < versions.size(); ++v) {
         if (versions[v].writer != kNoIndex) continue;
         const ResourceRecord& resource = graph_->resources()[versions[v].resource];
-        content_[v] = resource.origin == ResourceOrigin::Imported
-                          ? mixHash(resource.staticId, resource.importedContent)
-                          : mixHash(resource.persistent / 2, persistent_->entry(resource.persistent / 2).content);
+        // Small numbers name both imports and entries: the kind keeps them apart.
+        if (resource.origin == ResourceOrigin::Imported)
+            content_[v] = mixHash(mixHash(resource.isBuffer ? 2 : 1, resource.staticId), resource.importedContent);
+        else
+            content_[v] = mixHash(mixHash(3, resource.persistent / 2), persistent_->entry(resource.persistent / 2).content);
     }
     for (uint32_t passIndex = 0; passIndex < graph_->passes().size(); ++passIndex) {
         const PassRecord& pass = graph_->passes()[passIndex];
