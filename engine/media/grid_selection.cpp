@@ -23,6 +23,7 @@ std::string describe(const GridInfo& grid) { return fmt::format("'{}' ({}, {})",
 std::string whyNot(const GridInfo& grid) {
     if (grid.gridClass == "level set") return "is a level set: distances to a surface";
     if (grid.gridClass == "points") return "holds points";
+    if (grid.type == "unreadable") return "is of a type that cannot be read";
     if (!grid.importable) return fmt::format("is {} of class {}", grid.type, grid.gridClass);
     if (!grid.affine) return "has a frustum transform, which is not affine";
     return {};
@@ -80,6 +81,7 @@ Result<size_t> selectDensity(std::span<const GridInfo> grids, const GridRequest&
     if (grids.size() == 1)
         return Error{fmt::format("'{}': its only grid '{}' cannot be density, because it {}; a scalar fog volume is needed", file, grids[0].name,
                                  whyNot(grids[0]))};
+    if (grids.empty()) return Error{fmt::format("'{}' has no grids; a scalar fog volume is needed", file)};
     const bool several = std::any_of(grids.begin(), grids.end(), [](const GridInfo& grid) { return whyNot(grid).empty(); });
     return Error{fmt::format("'{}' has {}; {}", file, describeGrids(grids),
                              several ? "say which one is density" : "none of them is a scalar fog volume that could be density")};

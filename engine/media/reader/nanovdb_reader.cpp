@@ -40,7 +40,7 @@ public:
     const T& at(const void* pointer, uint64_t further = 0) const {
         const uint64_t offset = uint64_t(reinterpret_cast<uintptr_t>(pointer) - reinterpret_cast<uintptr_t>(data_.get()));
         if (offset % alignof(T) != 0 || offset > bytes_ || bytes_ - offset < sizeof(T) || bytes_ - offset - sizeof(T) < further)
-            fail("its tree points outside itself");
+            fail("it is damaged (its tree points outside itself)");
         return *static_cast<const T*>(pointer);
     }
 
@@ -63,11 +63,12 @@ struct Entry {
     std::string name;
 };
 
-/// Walks one tree and sends its blocks and tiles. Places are those the parents say, whatever a child claims.
+/// Walks one tree, checks its offsets and, given a sink, sends its blocks and tiles. Places are those the parents say,
+/// whatever a child claims.
 template <typename Build>
 class TreeReader {
 public:
-    TreeReader(const GridMemory& memory, VoxelSink& sink) : memory_(memory), sink_(sink) {}
+    TreeReader(const GridMemory& memory, VoxelSink* sink) : memory_(memory), sink_(sink) {}
 
     void read() {
         using Tree = nanovdb::TreeData<3>;
@@ -100,8 +101,8 @@ private:
     }
 
     void sendTile(const Place& origin, int32_t size, float value, bool active) {
-        if (value == 0 || (!active && value == background_)) return;
-        sink_.tile(origin, size, value);
+        if (!sink_ || value == 0 || (!active && value == background_)) return;
+        sink_->tile(origin, size, value);
     }
 
     template <typename Node>
@@ -126,21 +127,22 @@ private:
         const Data* leaf;
         if constexpr (std::is_same_v<Build, nanovdb::FpN>) {
             leaf = &memory_.at<Data>(pointer);
-            if ((leaf->mFlags >> 5) > 4) fail("a leaf has an unknown number of bits");
+            if ((leaf->mFlags >> 5) > 4) fail("it is damaged (a leaf has an unknown number of bits)");
             memory_.at<Data>(pointer, uint64_t(leaf->bitWidth()) * 64);
         } else {
             leaf = &memory_.at<Data>(pointer);
         }
+        if (!sink_) return;
         float values[512];
         for (uint32_t i = 0; i < 512; ++i) {
             values[i] = asFloat(leaf->getValue(i));
             if (background_ != 0 && values[i] == background_ && !leaf->mValueMask.isOn(i)) values[i] = 0;
         }
-        sink_.block(origin, values);
+        sink_->block(origin, values);
     }
 
     const GridMemory& memory_;
-    VoxelSink& sink_;
+    VoxelSink* sink_; // null: only check
     float background_ = 0;
 };
 
@@ -167,7 +169,7 @@ public:
         const nanovdb::GridData& data = load(grid);
         GridDescription result;
         result.name = entries_[grid].name;
-        result.type = data.mGridType < nanovdb::GridType::End ? typeName(data.mGridType) : "of an unknown type";
+        result.type = data.mGridType < nanovdb::GridType::End ? typeName(data.mGridType) : "unreadable";
         result.gridClass = className(data.mGridClass);
         result.record.importable = (result.gridClass == "fog volume" || result.gridClass == "unknown") && isScalar(data.mGridType);
         result.record.activeVoxels = entries_[grid].meta.voxelCount;
@@ -197,10 +199,11 @@ public:
 private:
     template <typename Build>
     void readTree(VoxelSink& sink) {
-        // The reading walk comes first, because it checks the offsets that the checksum's own walk trusts.
         const auto& grid = memory_.at<nanovdb::NanoGrid<Build>>(memory_.data());
-        TreeReader<Build>(memory_, sink).read();
-        if (!nanovdb::validateChecksum(grid)) fail("its checksum does not match its content");
+        TreeReader<Build>(memory_, nullptr).read(); // first, because the checksum's own walk trusts the offsets
+        // "Full" compares as much as the file has: some record a checksum of the head alone, or none.
+        if (!nanovdb::validateChecksum(grid, nanovdb::ChecksumMode::Full)) fail("it is damaged (its checksum does not match its content)");
+        TreeReader<Build>(memory_, &sink).read();
     }
 
     static bool isScalar(nanovdb::GridType type) {
@@ -238,7 +241,7 @@ private:
 
     void readBytes(void* out, uint64_t bytes) {
         file_.read(static_cast<char*>(out), std::streamsize(bytes));
-        if (!file_ || uint64_t(file_.gcount()) != bytes) fail("it ends too early");
+        if (!file_ || uint64_t(file_.gcount()) != bytes) fail("it is damaged (it ends too early)");
     }
 
     /// The heads of all segments, and where their grids lie.
@@ -249,7 +252,7 @@ private:
             nanovdb::io::Header header;
             readBytes(&header, sizeof header);
             if (header.magic != NANOVDB_MAGIC_NUMBER)
-                fail(position > 0 ? "a segment of it does not begin as it should"
+                fail(position > 0 ? "it is damaged (a segment of it does not begin as it should)"
                                   : "it was written by a version of NanoVDB that is not understood; 32.3 to 32.5 are");
             if (header.version.getMajor() != NANOVDB_MAJOR_VERSION_NUMBER)
                 fail("it was written by NanoVDB " + std::to_string(header.version.getMajor()) + "; version " +
@@ -260,18 +263,18 @@ private:
             position = uint64_t(file_.tellg());
             for (size_t i = firstOfSegment; i < entries_.size(); ++i) {
                 entries_[i].offset = position;
-                if (entries_[i].meta.fileSize > fileBytes_ - position) fail("it ends too early");
+                if (entries_[i].meta.fileSize > fileBytes_ - position) fail("it is damaged (it ends too early)");
                 position += entries_[i].meta.fileSize;
             }
         }
     }
 
     void readEntry(nanovdb::io::Codec codec) {
-        if (entries_.size() >= stream::kMaximumGrids) fail("it claims to hold too many grids");
+        if (entries_.size() >= stream::kMaximumGrids) fail("it is damaged (it claims to hold too many grids)");
         Entry entry{};
         readBytes(&entry.meta, sizeof entry.meta);
         entry.codec = codec;
-        if (entry.meta.nameSize > stream::kMaximumTextBytes) fail("a grid's name is too long");
+        if (entry.meta.nameSize > stream::kMaximumTextBytes) fail("it is damaged (a grid's name is too long)");
         std::string name(entry.meta.nameSize, '\0');
         readBytes(name.data(), name.size());
         entry.name = name.c_str(); // up to its terminator
@@ -286,7 +289,7 @@ private:
             loaded_ = int64_t(grid);
         }
         const auto& data = memory_.at<nanovdb::GridData>(memory_.data());
-        if (data.mMagic != NANOVDB_MAGIC_NUMBER || data.mGridSize != memory_.size()) fail("a grid does not begin as it should");
+        if (data.mMagic != NANOVDB_MAGIC_NUMBER || data.mGridSize != memory_.size()) fail("it is damaged (a grid does not begin as it should)");
         return data;
     }
 
@@ -295,7 +298,7 @@ private:
         file_.clear();
         file_.seekg(std::streamoff(entry.offset));
         if (entry.codec == nanovdb::io::Codec::NONE) {
-            if (gridBytes > packedBytes) fail("a grid is larger than its part of the file");
+            if (gridBytes > packedBytes) fail("it is damaged (a grid is larger than its part of the file)");
             GridMemory grid(gridBytes);
             readBytes(grid.data(), gridBytes);
             return grid;
@@ -312,10 +315,10 @@ private:
     /// The next length-prefixed part of `packed` from `position` on.
     static std::pair<const char*, uint64_t> nextPart(const std::vector<char>& packed, uint64_t& position) {
         uint64_t bytes = 0;
-        if (packed.size() - position < sizeof bytes) fail("its compressed part ends too early");
+        if (packed.size() - position < sizeof bytes) fail("it is damaged (its compressed part ends too early)");
         std::memcpy(&bytes, packed.data() + position, sizeof bytes);
         position += sizeof bytes;
-        if (bytes > packed.size() - position) fail("its compressed part ends too early");
+        if (bytes > packed.size() - position) fail("it is damaged (its compressed part ends too early)");
         const char* start = packed.data() + position;
         position += bytes;
         return {start, bytes};
@@ -327,7 +330,7 @@ private:
         uLongf unpacked = uLongf(grid.size());
         if (uncompress(reinterpret_cast<Bytef*>(grid.data()), &unpacked, reinterpret_cast<const Bytef*>(start), uLong(bytes)) != Z_OK ||
             unpacked != grid.size())
-            fail("its compressed part is damaged");
+            fail("it is damaged (its compressed part does not unpack)");
     }
 
     static void unblosc(const std::vector<char>& packed, const GridMemory& grid) {
@@ -339,7 +342,7 @@ private:
             size_t unpacked = 0;
             if (blosc_cbuffer_validate(start, bytes, &unpacked) < 0 || unpacked != expected ||
                 blosc_decompress_ctx(start, grid.data() + done, expected, 1) != int(expected))
-                fail("its compressed part is damaged");
+                fail("it is damaged (its compressed part does not unpack)");
             done += expected;
         }
     }

@@ -21,6 +21,21 @@ float toFloat(double value) {
     return float(value);
 }
 
+/// Calls a function of the library; what it throws becomes a reason for people. Lack of memory stays what it is.
+template <typename Function>
+auto explained(Function function) -> decltype(function()) {
+    try {
+        return function();
+    } catch (const std::bad_alloc&) {
+        throw;
+    } catch (const std::exception& failure) {
+        // The library begins its messages with the name of the exception's class.
+        std::string reason = failure.what();
+        if (const size_t colon = reason.find(": "); colon < 20) reason.erase(0, colon + 2);
+        throw std::runtime_error("it is damaged (OpenVDB says: " + reason + ")");
+    }
+}
+
 std::array<int32_t, 3> asArray(const openvdb::Coord& c) { return {c.x(), c.y(), c.z()}; }
 
 std::string className(const openvdb::GridBase& grid, const std::string& type) {
@@ -89,7 +104,7 @@ class OpenVdbSource final : public GridSource {
 public:
     explicit OpenVdbSource(const std::string& path) : file_(path) {
         openvdb::initialize();
-        file_.open(/*delayLoad=*/false); // nothing is mapped, and nothing copied to a temporary file
+        explained([&] { file_.open(/*delayLoad=*/false); }); // nothing is mapped or copied to a temporary file
     }
 
     std::string format() const override { return "OpenVDB " + std::to_string(file_.fileVersion()); }
@@ -104,14 +119,14 @@ public:
     }
 
     GridDescription measure(uint32_t grid) override {
-        const openvdb::GridBase::Ptr whole = file_.readGrid(names_.at(grid));
+        const openvdb::GridBase::Ptr whole = explained([&] { return file_.readGrid(names_.at(grid)); });
         GridDescription result = describe(*whole, names_[grid]);
         addExtent(result, whole->evalActiveVoxelBoundingBox(), whole->activeVoxelCount());
         return result;
     }
 
     void read(uint32_t grid, VoxelSink& sink) override {
-        const openvdb::GridBase::Ptr whole = file_.readGrid(names_.at(grid));
+        const openvdb::GridBase::Ptr whole = explained([&] { return file_.readGrid(names_.at(grid)); });
         if (const auto floats = openvdb::gridConstPtrCast<openvdb::FloatGrid>(whole)) return readScalars(*floats, sink);
         if (const auto doubles = openvdb::gridConstPtrCast<openvdb::DoubleGrid>(whole)) return readScalars(*doubles, sink);
         throw std::runtime_error("grid '" + names_[grid] + "' holds no scalars");
@@ -131,7 +146,7 @@ private:
         } catch (const openvdb::Exception&) { // a type that this version of the library does not know
             GridDescription unknown;
             unknown.name = name;
-            unknown.type = "of a type that cannot be read";
+            unknown.type = "unreadable";
             unknown.gridClass = "unknown";
             return unknown;
         }
