@@ -223,9 +223,10 @@ std::vector<EnvironmentLight> EnvironmentSampler::sample(int count, uint32_t fra
     std::vector<EnvironmentLight> result;
     uint64_t index = uint64_t(seed) << 20;
     for (const Region& region : regions(count)) {
-        // A region's points over the frames are the plastic-number sequence (Roberts 2018), shifted anew for every region.
-        const double u = fraction(hashed(2 * index) + 0.75487766624669276005 * frame);
-        const double v = fraction(hashed(2 * index + 1) + 0.56984029099805326591 * frame);
+        // A region's points over the frames are a Weyl sequence, shifted anew for every region. Steps √29 and √22: irrational to
+        // those of all other samples of a frame (see framePoint() of light_system.cpp).
+        const double u = fraction(hashed(2 * index) + 0.38516480713450403 * frame);
+        const double v = fraction(hashed(2 * index + 1) + 0.69041575982342955 * frame);
         ++index;
         const EnvironmentLight light = sampleLight(region, u, v);
         if (light.illuminance != dvec3(0)) result.push_back(light);

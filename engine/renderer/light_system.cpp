@@ -27,11 +27,13 @@ uint32_t shaderType(LightType type) {
     return gpu::kLightPoint;
 }
 
-/// The light of this frame as a low-discrepancy point of the unit square; every light has its own sequence.
+/// The light of this frame as a low-discrepancy point of the unit square; every light has its own shift. The steps (√58 and √21)
+/// are irrational to those of sub-pixel offsets, noise, texel grids and environment samples: together they must fill the
+/// product of their squares, or averages would be biased.
 dvec2 framePoint(const gpu::ViewData& view, uint32_t light) {
     const uint64_t hash = fg::mixHash(uint64_t(view.seed) + 31, light);
-    const double x = double(hash & 0xffffffffu) * 0x1p-32 + 0.75487766624669276 * view.frameIndex;
-    const double y = double(hash >> 32) * 0x1p-32 + 0.56984029099805327 * view.frameIndex;
+    const double x = double(hash & 0xffffffffu) * 0x1p-32 + 0.61577310586390828 * view.frameIndex;
+    const double y = double(hash >> 32) * 0x1p-32 + 0.58257569495584000 * view.frameIndex;
     return {x - std::floor(x), y - std::floor(y)};
 }
 

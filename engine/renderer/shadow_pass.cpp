@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
+#include <string_view>
 
 #include "framegraph/hash.h"
 #include "renderer/gpu_scene.h"
@@ -14,6 +16,7 @@ struct ShadowPass::Data {
     const GpuScene* scene;
     const ShadowPlan* plan;
     ViewResources view;
+    uint64_t castersKey;
     bool wasReset;
 };
 
@@ -44,6 +47,26 @@ fg::RasterState emptyState() {
 
 } // namespace
 
+/// What the casters look like from anywhere: the scene's version also moves with what casts no shadow, as lights and cameras.
+uint64_t ShadowPass::castersKey(const GpuScene& scene) {
+    if (casterVersion_ == scene.version()) return castersKey_;
+    uint64_t key = fg::kHashStart;
+    for (const DrawItem& item : scene.items()) {
+        if (item.topology != fg::Topology::Triangles) continue;
+        key = fg::mixHash(key, uint64_t(item.geometry.id) << 32 | uint64_t(item.alphaMode));
+        key = fg::mixHash(key, scene.scene().meshes[size_t(item.mesh)].version);
+        const mat4& m = scene.objectData()[item.object].renderFromLocal;
+        for (int c = 0; c < 4; ++c)
+            for (int r = 0; r < 4; r += 2)
+                key = fg::mixHash(key, uint64_t(std::bit_cast<uint32_t>(m[c][r])) << 32 | std::bit_cast<uint32_t>(m[c][r + 1]));
+        if (item.alphaMode == AlphaMode::Opaque) continue;
+        const gpu::MaterialData& material = scene.materialData()[item.material];
+        key = fg::hashName({reinterpret_cast<const char*>(&material), sizeof material}, fg::mixHash(key, scene.textures(item.material).baseColor.id));
+    }
+    casterVersion_ = scene.version();
+    return castersKey_ = key;
+}
+
 void ShadowPass::drawMap(const Data& data, size_t index, fg::PassContext& context) const {
     const gpu::ShadowView& view = data.plan->views[index];
     const fg::Target depth{data.atlas, view.layer, 0};
@@ -73,13 +96,12 @@ void ShadowPass::draw(const Data& data, fg::PassContext& context) {
         const float nothing[4] = {0, 0, 0, 0};
         context.clearTexture(data.atlas, nothing);
     }
-    if (data.wasReset || heldCasters_ != data.scene->version()) held_.clear();
-    heldCasters_ = data.scene->version();
+    if (data.wasReset) held_.clear();
     std::vector<Held> holds;
     for (size_t i = 0; i < data.plan->views.size(); ++i) {
         const gpu::ShadowView& view = data.plan->views[i];
         if (view.atlas.z <= 0) continue;
-        const Held wanted{view.layer, view.atlas, data.plan->keys[i]};
+        const Held wanted{view.layer, view.atlas, fg::mixHash(data.castersKey, data.plan->keys[i])};
         const bool there = std::any_of(held_.begin(), held_.end(), [&](const Held& h) {
             return h.key == wanted.key && h.layer == wanted.layer && h.square == wanted.square;
         });
@@ -95,7 +117,8 @@ void ShadowPass::draw(const Data& data, fg::PassContext& context) {
 ShadowResources ShadowPass::addPasses(fg::FrameGraph& graph, const GpuScene& scene, const ShadowPlan& plan, const ViewResources& view) {
     struct Upload { fg::BufferHandle views; const gpu::ShadowView* data; size_t bytes; };
     ShadowResources resources;
-    uint64_t key = fg::mixHash(scene.version(), plan.views.size());
+    const uint64_t casters = plan.views.empty() ? 0 : castersKey(scene);
+    uint64_t key = fg::mixHash(casters, plan.views.size());
     for (const uint64_t k : plan.keys) key = fg::mixHash(key, k);
 
     const std::string_view viewBytes(reinterpret_cast<const char*>(plan.views.data()), plan.views.size() * sizeof(gpu::ShadowView));
@@ -128,6 +151,7 @@ ShadowResources ShadowPass::addPasses(fg::FrameGraph& graph, const GpuScene& sce
             data.scene = &scene;
             data.plan = &plan;
             data.view = view;
+            data.castersKey = casters;
             data.wasReset = atlas.wasReset;
             data.atlas = builder.write(atlas.handle, fg::Access::DepthTarget);
             builder.cacheBy(key);

@@ -35,8 +35,11 @@ private:
     void draw(const Data& data, fg::PassContext& context);
     void drawMap(const Data& data, size_t index, fg::PassContext& context) const;
 
+    uint64_t castersKey(const GpuScene& scene);
+
     std::vector<Held> held_;
-    Version heldCasters_ = 0;
+    Version casterVersion_ = 0; // that castersKey_ was made for
+    uint64_t castersKey_ = 0;
     uint64_t mapsDrawn_ = 0;
 };
 

@@ -243,12 +243,13 @@ private:
     uint64_t next_ = 0;
 };
 
-/// A hashed number in 0..1 for a light and a frame, the frames in a low-discrepancy sequence.
+/// This frame's offset of a light's texel grid, -½..½ texels. Steps √14 and √33: irrational to those of all other samples (see
+/// framePoint() of light_system.cpp).
 dvec2 jitterOf(const gpu::ViewData& view, uint32_t light) {
     if ((view.flags & gpu::kViewConverge) == 0) return dvec2(0);
     const uint64_t hash = fg::mixHash(uint64_t(view.seed) + 77, light);
-    const double x = double(hash & 0xffffffffu) * 0x1p-32 + 0.75487766624669276 * view.frameIndex;
-    const double y = double(hash >> 32) * 0x1p-32 + 0.56984029099805327 * view.frameIndex;
+    const double x = double(hash & 0xffffffffu) * 0x1p-32 + 0.74165738677394139 * view.frameIndex;
+    const double y = double(hash >> 32) * 0x1p-32 + 0.74456264653802865 * view.frameIndex;
     return {x - std::floor(x) - 0.5, y - std::floor(y) - 0.5};
 }
 
@@ -309,7 +310,8 @@ ShadowPlan planShadows(std::span<gpu::LightData> lights, std::span<const uint32_
     for (const uint32_t light : chosen) planned.push_back({light, 0, viewCount(lights[light], request, settings)});
     fitAtlas(lights, planned, settings, plan);
     if (planned.empty()) return plan;
-    std::stable_sort(planned.begin(), planned.end(), [](const PlannedLight& a, const PlannedLight& b) { return a.side > b.side; });
+    // Not by importance: places in the atlas, and with them kept maps, stay while importances change.
+    std::sort(planned.begin(), planned.end(), [](const PlannedLight& a, const PlannedLight& b) { return a.side != b.side ? a.side > b.side : a.light < b.light; });
 
     const gpu::ViewData& view = request.view->data;
     const bool converge = (view.flags & gpu::kViewConverge) != 0;

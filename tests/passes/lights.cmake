@@ -1,0 +1,1 @@
+tyndall_test(passes_lights LABEL passes SOURCES lights_fixture.cpp lights_test.cpp shadows_test.cpp DEPENDS tyndall_gl_test_support Tyndall::renderer)

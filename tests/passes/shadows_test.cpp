@@ -1,0 +1,539 @@
+// Shadows at the right place: against rays, closed forms of penumbras, and counts of what is drawn.
+
+#include "passes/lights_fixture.h"
+
+#include <glm/gtc/matrix_transform.hpp>
+
+#include <cmath>
+#include <random>
+
+#include "support/content.h"
+
+namespace tyndall::test {
+namespace {
+
+using ShadowsOnPoints = LightsTest;
+TYNDALL_GL_TESTS(ShadowsOnPoints);
+
+constexpr dvec3 kUp{0, 1, 0};
+
+/// Distance by which the segment from a to b misses (positive) or enters (negative) the box, roughly: the largest shrinking of
+/// the box that the segment still hits, found by bisection of the slab test.
+bool hits(const dvec3& a, const dvec3& b, const dvec3& centre, const dvec3& half) {
+    double enter = 0, leave = 1;
+    for (int i = 0; i < 3; ++i) {
+        const double d = b[i] - a[i];
+        double t0 = (centre[i] - half[i] - a[i]) / d, t1 = (centre[i] + half[i] - a[i]) / d;
+        if (d == 0) {
+            if (std::abs(a[i] - centre[i]) > half[i]) return false;
+            continue;
+        }
+        if (t0 > t1) std::swap(t0, t1);
+        enter = std::max(enter, t0);
+        leave = std::min(leave, t1);
+    }
+    return enter <= leave;
+}
+
+/// A box of 2 × 1 × 2 m hovering over a floor of 16 × 16 m, and a grid of probes on the floor, all times `scale`.
+struct BoxOverFloor {
+    static constexpr int kGrid = 40;
+    SceneMaker maker;
+    std::vector<Probe> probes;
+    dvec3 centre, half;
+    double scale;
+    explicit BoxOverFloor(double s = 1) : centre(dvec3(0.3, 2, -0.2) * s), half(dvec3(1, 0.5, 1) * s), scale(s) {
+        maker.primitive(PrimitiveShape::Plane, dvec3(16, 1, 16) * s, {0, 0, 0});
+        maker.primitive(PrimitiveShape::Box, dvec3(2, 1, 2) * s, centre);
+        for (int y = 0; y < kGrid; ++y)
+            for (int x = 0; x < kGrid; ++x) probes.push_back({dvec3((x + 0.5) / kGrid - 0.5, 0, (y + 0.5) / kGrid - 0.5) * 12.0 * s, kUp});
+    }
+    [[nodiscard]] ProbeOptions options() const {
+        ProbeOptions o;
+        o.eye = dvec3(0, 4, 12) * scale;
+        o.sceneRadius = 12 * scale;
+        return o;
+    }
+    /// 1 where the way to the light is free by `slack` metres, 0 where it is blocked by that much, -1 between.
+    [[nodiscard]] int truth(const dvec3& p, const dvec3& light, double slack) const {
+        if (hits(p, light, centre, half - slack)) return 0;
+        return hits(p, light, centre, half + slack) ? -1 : 1;
+    }
+};
+
+Light spotLight(float candela, float outer = 0.8f) {
+    Light light;
+    light.type = LightType::Spot;
+    light.intensity = candela;
+    light.outerConeAngle = outer;
+    return light;
+}
+
+/// Every kind of light above the box; `from` is where its light comes from.
+struct Lamp {
+    const char* name;
+    std::function<void(SceneMaker&, double scale)> add;
+    dvec3 from;
+};
+const std::vector<Lamp>& lamps() {
+    static const dvec3 place(2.2, 6.1, 1.3);
+    static const std::vector<Lamp> all = {
+        {"directional", [](SceneMaker& m, double) { m.directionalLight(10, -place); }, place * 100.0},
+        {"point", [](SceneMaker& m, double s) { m.pointLight(float(100 * s * s), place * s); }, place},
+        {"spot", [](SceneMaker& m, double s) { m.light(spotLight(float(100 * s * s)), lookingAlong(place * s, -place)); }, place},
+        {"wide spot", [](SceneMaker& m, double s) { m.light(spotLight(float(100 * s * s), 1.5f), lookingAlong(place * s, -place)); }, place},
+    };
+    return all;
+}
+
+TEST_P(ShadowsOnPoints, BoxShadowLiesWhereRaysSayAtEveryScale) {
+    for (const Lamp& lamp : lamps()) {
+        std::vector<Seen> atScale[3];
+        int index = 0;
+        for (const double scale : {1e-3, 1.0, 1e3}) {
+            BoxOverFloor world(scale);
+            lamp.add(world.maker, scale);
+            atScale[index] = look(world.maker, world.probes, world.options());
+            int dark = 0, light = 0, wrong = 0;
+            for (size_t i = 0; i < world.probes.size(); ++i) {
+                // Two texels: 16 m over 512, somewhat more across the diagonal and for maps seen from near by.
+                const int truth = world.truth(world.probes[i].position, lamp.from * scale, 0.1 * scale);
+                dark += truth == 0;
+                light += truth == 1;
+                wrong += truth >= 0 && atScale[index][i].visibility != float(truth);
+            }
+            EXPECT_EQ(wrong, 0) << lamp.name << " at scale " << scale;
+            EXPECT_GT(dark, 20);
+            EXPECT_GT(light, 800);
+            ++index;
+        }
+        for (const int other : {0, 2}) {
+            double difference = 0;
+            for (size_t i = 0; i < atScale[1].size(); ++i) difference += std::abs(double(atScale[other][i].visibility) - double(atScale[1][i].visibility));
+            EXPECT_LT(difference / double(atScale[1].size()), 1e-3) << lamp.name;
+        }
+    }
+}
+
+TEST_P(ShadowsOnPoints, AveragedFramesShowTheSameShadow) {
+    for (const Lamp& lamp : lamps()) {
+        BoxOverFloor world;
+        lamp.add(world.maker, 1);
+        ProbeOptions options = world.options();
+        options.converge = true;
+        options.frames = 8;
+        const std::vector<Seen> seen = look(world.maker, world.probes, options);
+        int wrong = 0;
+        for (size_t i = 0; i < world.probes.size(); ++i) {
+            const int truth = world.truth(world.probes[i].position, lamp.from, 0.1);
+            wrong += truth >= 0 && seen[i].visibility != float(truth);
+        }
+        EXPECT_EQ(wrong, 0) << lamp.name;
+    }
+}
+
+TEST_P(ShadowsOnPoints, LitPlanesHaveNoAcneAtAnyTilt) {
+    std::mt19937 random{uint32_t(seed())};
+    std::uniform_real_distribution<double> unit(-1, 1);
+    for (const bool converge : {false, true})
+        for (const double tilt : {0.0, 0.3, 0.8, 1.2, 1.4, 1.5}) {
+            const dquat rotation = glm::angleAxis(tilt, glm::normalize(dvec3(1, 0, 0.3)));
+            const dvec3 normal = rotation * kUp;
+            for (int kind = 0; kind < 3; ++kind) {
+                SceneMaker maker;
+                maker.primitive(PrimitiveShape::Plane, {10, 1, 10}, {0, 0, 0}, rotation);
+                if (kind == 0) maker.directionalLight(1, {0, -1, 0});
+                if (kind == 1) maker.pointLight(1, {0, 7, 0});
+                if (kind == 2) maker.light(spotLight(1, 0.9f), lookingAlong({0, 9, 0}, {0, -1, 0}));
+                std::vector<Probe> probes;
+                for (int i = 0; i < 1024; ++i) probes.push_back({rotation * dvec3(4.5 * unit(random), 0, 4.5 * unit(random)), normal});
+                ProbeOptions options;
+                options.converge = converge;
+                const std::vector<Seen> seen = look(maker, probes, options);
+                int acne = 0;
+                for (size_t i = 0; i < probes.size(); ++i) acne += seen[i].open > 0 && seen[i].visibility < 1;
+                EXPECT_EQ(acne, 0) << "kind " << kind << ", tilt " << tilt << ", converge " << converge;
+            }
+        }
+}
+
+TEST_P(ShadowsOnPoints, BallsHaveNoAcneOnTheLitSide) {
+    SceneMaker maker;
+    maker.primitive(PrimitiveShape::Sphere, {4, 4, 4}, {0, 0, 0});
+    maker.directionalLight(1, {0.3, -1, 0.2});
+    const dvec3 toLight = glm::normalize(dvec3(-0.3, 1, -0.2));
+    // Probes on the facets themselves, with the facets' normals, as rasterised pixels are.
+    const Mesh& mesh = maker.scene.meshes[0];
+    std::vector<Probe> probes;
+    for (size_t t = 0; t + 2 < mesh.indices.size(); t += 3) {
+        const dvec3 a(mesh.positions[mesh.indices[t]]), b(mesh.positions[mesh.indices[t + 1]]), c(mesh.positions[mesh.indices[t + 2]]);
+        const dvec3 cross = glm::cross(b - a, c - a);
+        if (glm::length(cross) < 1e-8) continue;
+        const dvec3 normal = glm::normalize(cross);
+        if (glm::dot(normal, toLight) > 0.1) probes.push_back({(a + b + c) / 3.0, normal});
+    }
+    ASSERT_GT(probes.size(), 2000u);
+    const std::vector<Seen> seen = look(maker, probes);
+    int acne = 0;
+    for (const Seen& s : seen) acne += s.visibility < 1;
+    EXPECT_EQ(acne, 0);
+}
+
+TEST_P(ShadowsOnPoints, ShadowsTouchWhatCastsThem) {
+    // A wall on a floor, light from behind it at 45 degrees: two texels behind the wall it is dark.
+    SceneMaker maker;
+    maker.primitive(PrimitiveShape::Plane, {10, 1, 10}, {0, 0, 0});
+    maker.primitive(PrimitiveShape::Box, {6, 2, 0.02}, {0, 1, 0});
+    maker.directionalLight(1, {0, -1, 1});
+    look(maker, {{{0, 0, 0}, kUp}});
+    const gpu::ShadowView& finest = lights().shadowPlan().views.back();
+    const double texel = double(finest.bias.x) * std::sqrt(2.0); // on the floor
+    std::vector<Probe> probes;
+    for (int i = 0; i < 200; ++i) probes.push_back({{-2 + 0.02 * i, 0, 0.01 + (2.0 + 0.01 * i) * texel}, kUp});
+    for (const Seen& s : look(maker, probes)) EXPECT_EQ(s.visibility, 0.0f);
+}
+
+/// A texture of 8 × 8 squares, every other one transparent.
+Material chequered(SceneMaker& maker, AlphaMode mode, uint8_t alpha = 0) {
+    ImageData image;
+    image.name = "chequers";
+    image.width = image.height = 64;
+    image.rgba.resize(64 * 64 * 4, 255);
+    for (int y = 0; y < 64; ++y)
+        for (int x = 0; x < 64; ++x)
+            if ((x / 8 + y / 8) % 2) image.rgba[size_t(4 * (64 * y + x) + 3)] = alpha;
+    maker.scene.images.push_back(image);
+    Texture texture;
+    texture.image = int(maker.scene.images.size()) - 1;
+    texture.sampler = {Filter::Nearest, Filter::Nearest, MipFilter::None, Wrap::ClampToEdge, Wrap::ClampToEdge};
+    maker.scene.textures.push_back(texture);
+    Material material;
+    material.alphaMode = mode;
+    material.baseColorTexture.texture = int(maker.scene.textures.size()) - 1;
+    return material;
+}
+
+TEST_P(ShadowsOnPoints, MaskedCastersLetLightThroughTheirHoles) {
+    SceneMaker maker;
+    maker.primitive(PrimitiveShape::Plane, {20, 1, 20}, {0, 0, 0});
+    maker.primitive(PrimitiveShape::Plane, {8, 1, 8}, {0, 2, 0}, {1, 0, 0, 0}, chequered(maker, AlphaMode::Mask));
+    maker.directionalLight(1, {0, -1, 0});
+    std::vector<Probe> probes;
+    for (int y = 0; y < 8; ++y)
+        for (int x = 0; x < 8; ++x) probes.push_back({{x - 3.5, 0, y - 3.5}, kUp});
+    const std::vector<Seen> seen = look(maker, probes);
+    int lit = 0;
+    for (int y = 0; y < 8; ++y)
+        for (int x = 0; x < 8; ++x) {
+            // Neighbours differ, whichever way the texture lies.
+            if (x > 0) {
+                EXPECT_NE(seen[size_t(8 * y + x)].visibility, seen[size_t(8 * y + x - 1)].visibility);
+            }
+            const float v = seen[size_t(8 * y + x)].visibility;
+            EXPECT_TRUE(v == 0 || v == 1) << v;
+            lit += v == 1;
+        }
+    EXPECT_EQ(lit, 32);
+}
+
+TEST_P(ShadowsOnPoints, BlendedCastersLetTheirTransparencyThrough) {
+    SceneMaker maker;
+    maker.primitive(PrimitiveShape::Plane, {20, 1, 20}, {0, 0, 0});
+    Material glass;
+    glass.alphaMode = AlphaMode::Blend;
+    glass.baseColor.w = 0.3f;
+    maker.primitive(PrimitiveShape::Plane, {8, 1, 8}, {0, 2, 0}, {1, 0, 0, 0}, glass);
+    maker.directionalLight(1, {0, -1, 0});
+    std::mt19937 random{uint32_t(seed())};
+    std::uniform_real_distribution<double> unit(-1, 1);
+    std::vector<Probe> probes;
+    for (int i = 0; i < 2000; ++i) probes.push_back({{3 * unit(random), 0, 3 * unit(random)}, kUp});
+    ProbeOptions options;
+    options.converge = true;
+    options.frames = 32;
+    double mean = 0;
+    for (const Seen& s : look(maker, probes, options)) mean += double(s.visibility) / double(probes.size());
+    EXPECT_NEAR(mean, 0.7, 0.02);
+}
+
+TEST_P(ShadowsOnPoints, SurfacesBlockFromBothSides) {
+    for (const double turn : {0.0, kPi}) {
+        SceneMaker maker;
+        Material oneSided;
+        maker.primitive(PrimitiveShape::Plane, {4, 1, 4}, {0, 2, 0}, glm::angleAxis(turn, dvec3(1, 0, 0)), oneSided);
+        maker.pointLight(1, {0, 5, 0});
+        const std::vector<Seen> seen = look(maker, {{{0, 0, 0}, kUp}, {{5, 0, 0}, kUp}, {{0, 3, 0}, {0, 0, 0}}});
+        EXPECT_EQ(seen[0].visibility, 0.0f);
+        EXPECT_EQ(seen[1].visibility, 1.0f);
+        EXPECT_EQ(seen[2].visibility, 1.0f);
+    }
+}
+
+TEST_P(ShadowsOnPoints, PointLightShadowsInAllSixDirections) {
+    SceneMaker maker;
+    const dvec3 lamp(0.3, -0.2, 0.5);
+    std::vector<Probe> probes;
+    std::vector<float> expected;
+    for (int axis = 0; axis < 3; ++axis)
+        for (const double sign : {-1.0, 1.0}) {
+            dvec3 d(0), size(0.5);
+            d[axis] = sign;
+            maker.primitive(PrimitiveShape::Box, size, lamp + 2.0 * d); // half of its side is seen under 8 degrees
+            for (const double aside : {-1.0, 0.0, 1.0}) {
+                dvec3 shift(0);
+                shift[(axis + 1) % 3] = aside;
+                probes.push_back({lamp + 6.0 * d + 2.0 * shift, -d});
+                expected.push_back(aside == 0 ? 0.0f : 1.0f);
+            }
+            // Edges and corners between the faces are open.
+            probes.push_back({lamp + dvec3(sign * 4, 4, axis == 0 ? 4 : axis == 1 ? -4 : 0), {0, 0, 0}});
+            expected.push_back(1);
+        }
+    maker.pointLight(1, lamp);
+    for (const bool converge : {false, true}) {
+        ProbeOptions options;
+        options.converge = converge;
+        const std::vector<Seen> seen = look(maker, probes, options);
+        for (size_t i = 0; i < probes.size(); ++i) EXPECT_EQ(seen[i].visibility, expected[i]) << "probe " << i << ", converge " << converge;
+    }
+}
+
+TEST_P(ShadowsOnPoints, RectLightShadowsOnItsSide) {
+    SceneMaker maker;
+    Light panel;
+    panel.type = LightType::Rect;
+    panel.radiance = vec3(10);
+    panel.size = {0.2, 0.2};
+    maker.light(panel, lookingAlong({0, 5, 0}, {0, -1, 0}));
+    maker.primitive(PrimitiveShape::Plane, {20, 1, 20}, {0, 0, 0});
+    maker.primitive(PrimitiveShape::Box, {1, 0.1, 1}, {0, 2.5, 0});
+    maker.primitive(PrimitiveShape::Box, {0.1, 2, 2}, {2, 4.5, 0}); // beside the panel: shadows through a side face
+    for (const bool converge : {false, true}) {
+        ProbeOptions options;
+        options.converge = converge;
+        options.frames = converge ? 16 : 1;
+        const std::vector<Seen> seen = look(maker, {{{0, 0, 0}, kUp}, {{0.5, 0, 0.5}, kUp}, {{1.5, 0, 0}, kUp}, {{8, 3.5, 0}, {-1, 0, 0}}, {{-8, 3.5, 0}, {1, 0, 0}}}, options);
+        EXPECT_EQ(seen[0].visibility, 0.0f);
+        EXPECT_EQ(seen[1].visibility, 0.0f);
+        EXPECT_EQ(seen[2].visibility, 1.0f);
+        EXPECT_EQ(seen[3].visibility, 0.0f);
+        EXPECT_EQ(seen[4].visibility, 1.0f);
+    }
+}
+
+/// Part of a disc's area on one side of a chord at signed distance x (in radii) from its centre.
+double discPart(double x) {
+    x = std::clamp(x, -1.0, 1.0);
+    return 0.5 + (x * std::sqrt(1 - x * x) + std::asin(x)) / kPi;
+}
+
+TEST_P(ShadowsOnPoints, SphereLightHasThePenumbraOfItsDiscOnAverage) {
+    // Ball of radius R at height 8; a wall's edge at height 4 along x = 0; receivers at height 0. At x the edge cuts the
+    // ball's disc at distance -x from its centre (similar triangles: the edge is half-way), so x/R of it is seen.
+    const double radius = 0.3;
+    SceneMaker maker;
+    maker.primitive(PrimitiveShape::Plane, {8, 1, 8}, {-4, 4, 0});
+    maker.primitive(PrimitiveShape::Plane, {20, 1, 20}, {0, -0.001, 0});
+    maker.pointLight(100, {0, 8, 0}, float(radius));
+    std::vector<Probe> probes;
+    for (double x = -0.5; x <= 0.5; x += 0.05) probes.push_back({{x, 0, 0}, kUp});
+    ProbeOptions options;
+    options.converge = true;
+    options.frames = 1024;
+    const std::vector<Seen> seen = look(maker, probes, options);
+    double worst = 0;
+    for (size_t i = 0; i < probes.size(); ++i) {
+        const double expected = discPart(probes[i].position.x / radius), measured = double(seen[i].lit / seen[i].open);
+        worst = std::max(worst, std::abs(measured - expected));
+    }
+    std::printf("worst error of the visible part %.4f\n", worst);
+    EXPECT_LT(worst, 0.015);
+}
+
+TEST_P(ShadowsOnPoints, SunAndRectHaveTheirPenumbrasOnAverage) {
+    const double halfAngle = 0.05, halfSize = 0.3;
+    for (const bool sun : {true, false}) {
+        SceneMaker maker;
+        maker.primitive(PrimitiveShape::Plane, {8, 1, 8}, {-4, 4, 0});
+        maker.primitive(PrimitiveShape::Plane, {20, 1, 20}, {0, -0.001, 0});
+        if (sun) maker.directionalLight(10, {0, -1, 0}, float(halfAngle));
+        Light panel;
+        panel.type = LightType::Rect;
+        panel.radiance = vec3(1);
+        panel.size = vec2(float(2 * halfSize));
+        if (!sun) maker.light(panel, glm::translate(dmat4(1), dvec3(0, 8, 0)) * glm::rotate(dmat4(1), -kPi / 2, dvec3(1, 0, 0)));
+        std::vector<Probe> probes;
+        for (double x = -0.4; x <= 0.4; x += 0.05) probes.push_back({{x, 0, 0}, kUp});
+        ProbeOptions options;
+        options.converge = true;
+        options.frames = 1024;
+        const std::vector<Seen> seen = look(maker, probes, options);
+        for (size_t i = 0; i < probes.size(); ++i) {
+            // The sun's disc is cut at tan(angle) = x/4; the rect, whose every part weighs almost the same here, at x.
+            const double x = probes[i].position.x;
+            const double expected = sun ? discPart(std::atan(x / 4) / halfAngle) : std::clamp(0.5 + 0.5 * x / halfSize, 0.0, 1.0);
+            EXPECT_NEAR(double(seen[i].lit / seen[i].open), expected, 0.02) << (sun ? "sun" : "rect") << " at " << x;
+        }
+    }
+}
+
+TEST_P(ShadowsOnPoints, SingleFramesHaveSoftShadowsOfTheRightWidth) {
+    const double radius = 0.3;
+    SceneMaker maker;
+    maker.primitive(PrimitiveShape::Plane, {8, 1, 8}, {-4, 4, 0});
+    maker.primitive(PrimitiveShape::Plane, {20, 1, 20}, {0, -0.001, 0});
+    maker.pointLight(100, {0, 8, 0}, float(radius));
+    lights().shadowSettings().taps = 32;
+    lights().shadowSettings().searchTaps = 32;
+    std::vector<Probe> probes;
+    std::vector<double> places = {-0.6, -0.2, -0.1, 0.0, 0.1, 0.2, 0.6};
+    for (const double x : places)
+        for (int z = 0; z < 64; ++z) probes.push_back({{x, 0, 0.02 * z}, kUp});
+    const std::vector<Seen> seen = look(maker, probes);
+    for (size_t p = 0; p < places.size(); ++p) {
+        double mean = 0;
+        for (size_t z = 0; z < 64; ++z) mean += double(seen[64 * p + z].visibility) / 64;
+        EXPECT_NEAR(mean, discPart(places[p] / radius), std::abs(places[p]) > 0.5 ? 1e-6 : 0.08) << "at " << places[p];
+    }
+}
+
+TEST_P(ShadowsOnPoints, FogBehindAWallStaysDark) {
+    // A wall of 1 cm, tilted against the light; points of fog from its back to 2 m behind it.
+    const dquat tilt = glm::angleAxis(0.6, dvec3(1, 0, 0));
+    std::mt19937 random{uint32_t(seed())};
+    std::uniform_real_distribution<double> unit(0, 1);
+    for (int kind = 0; kind < 2; ++kind)
+        for (const bool converge : {false, true}) {
+            SceneMaker maker;
+            maker.primitive(PrimitiveShape::Box, {8, 0.01, 8}, {0, 3, 0}, tilt);
+            if (kind == 0) maker.directionalLight(1, {0, -1, 0});
+            else maker.pointLight(1, {0, 8, 0});
+            std::vector<Probe> probes;
+            for (int i = 0; i < 4096; ++i) {
+                const dvec3 back = dvec3(0, 3, 0) + tilt * dvec3(4 * unit(random) - 2, -0.005, 4 * unit(random) - 2);
+                probes.push_back({back - dvec3(0, 2 * unit(random), 0), {0, 0, 0}});
+            }
+            ProbeOptions options;
+            options.converge = converge;
+            double mean = 0;
+            for (const Seen& s : look(maker, probes, options)) mean += double(s.visibility) / double(probes.size());
+            EXPECT_LT(mean, converge ? 5e-3 : 1e-3) << "kind " << kind << ", converge " << converge;
+        }
+}
+
+TEST_P(ShadowsOnPoints, MapsAreDrawnAgainOnlyWhereSomethingChanged) {
+    BoxOverFloor world;
+    const int first = world.maker.pointLight(10, {3, 5, 0}), second = world.maker.pointLight(10, {-3, 5, 0});
+    const auto drawn = [&] {
+        const uint64_t before = lights().shadowMapsDrawn();
+        look(world.maker, world.probes, world.options());
+        return lights().shadowMapsDrawn() - before;
+    };
+    EXPECT_EQ(drawn(), 12u);
+    EXPECT_EQ(drawn(), 0u);
+    EXPECT_EQ(statusOf("shadow.maps"), "cached");
+    EXPECT_EQ(statusOf("lights.upload"), "cached");
+    world.maker.moveNode(second, {0.1, 0, 0});
+    EXPECT_EQ(drawn(), 6u) << "its own alone";
+    world.maker.moveNode(1, {0.1, 0, 0}); // the box
+    EXPECT_EQ(drawn(), 12u);
+    EXPECT_EQ(drawn(), 0u);
+    // A light that changes without any transform: its colour is no part of its maps.
+    world.maker.scene.lights[0].intensity = 20;
+    world.maker.scene.versions.lights = nextVersion();
+    EXPECT_EQ(drawn(), 0u);
+    EXPECT_EQ(statusOf("lights.upload"), "ran");
+    // Moving the camera leaves point lights alone.
+    ProbeOptions options = world.options();
+    options.eye.x += 1;
+    const uint64_t before = lights().shadowMapsDrawn();
+    look(world.maker, world.probes, options);
+    EXPECT_EQ(lights().shadowMapsDrawn(), before);
+    // Averaged frames shift their texel grids: all anew.
+    options.converge = true;
+    look(world.maker, world.probes, options);
+    EXPECT_EQ(lights().shadowMapsDrawn(), before + 12);
+    world.maker.scene.lights[size_t(world.maker.scene.nodes[size_t(first)].light)].castsShadows = false;
+    world.maker.scene.versions.lights = nextVersion();
+    EXPECT_GE(drawn(), 6u);
+    EXPECT_EQ(lights().shadowPlan().views.size(), 6u);
+}
+
+TEST_P(ShadowsOnPoints, CachedMapsEqualFreshOnes) {
+    BoxOverFloor world;
+    const int lamp = world.maker.pointLight(10, {3, 5, 0});
+    world.maker.directionalLight(1, {0.2, -1, 0.1});
+    std::mt19937 random{uint32_t(seed())};
+    std::uniform_real_distribution<double> unit(-1, 1);
+    ProbeOptions options = world.options();
+    for (int step = 0; step < 6; ++step) {
+        if (step % 2) world.maker.moveNode(lamp, dvec3(unit(random), 0, unit(random)));
+        else options.eye += dvec3(unit(random), 0, unit(random)) * 2.0;
+        if (step == 4) lights().shadowSettings().localResolution = 256;
+        const std::vector<Seen> kept = look(world.maker, world.probes, options);
+        forgetEverything();
+        const std::vector<Seen> fresh = look(world.maker, world.probes, options);
+        for (size_t i = 0; i < kept.size(); ++i) ASSERT_EQ(kept[i].lit, fresh[i].lit) << "step " << step << ", probe " << i;
+    }
+}
+
+TEST_P(ShadowsOnPoints, SkipsSayWhy) {
+    SceneMaker empty;
+    empty.pointLight(1, {0, 2, 0});
+    EXPECT_EQ(look(empty, {{{1, 0, 0}, {0, 0, 0}}})[0].visibility, 1.0f);
+    EXPECT_EQ(statusOf("shadow.maps"), "skipped: no surface in the scene");
+    BoxOverFloor world;
+    look(world.maker, world.probes, world.options());
+    EXPECT_EQ(statusOf("shadow.maps"), "skipped: no light casts a shadow");
+    world.maker.pointLight(10, {3, 5, 0});
+    world.maker.scene.lights[0].castsShadows = false;
+    const std::vector<Seen> seen = look(world.maker, world.probes, world.options());
+    for (const Seen& s : seen) EXPECT_EQ(s.visibility, 1.0f);
+    EXPECT_EQ(statusOf("shadow.maps"), "skipped: no light casts a shadow");
+}
+
+TEST_P(ShadowsOnPoints, TheLightsThatMatterMostGetShadows) {
+    BoxOverFloor world;
+    world.maker.pointLight(1, {0, 4, 30});
+    world.maker.pointLight(100, {0, 5, 0.1});
+    world.maker.pointLight(50, {0, 5, 0});
+    world.maker.pointLight(0.1f, {0, 5, 0});
+    lights().shadowSettings().maxLights = 2;
+    look(world.maker, world.probes, world.options());
+    std::vector<int> shadowed;
+    for (uint32_t i = 0; i < lights().lights().size(); ++i)
+        if (lights().lights()[i].shadowIndex >= 0) shadowed.push_back(int(i));
+    EXPECT_EQ(shadowed, (std::vector<int>{1, 2}));
+    ASSERT_EQ(lights().notes().size(), 1u);
+    EXPECT_EQ(lights().notes()[0], "2 of 4 lights cast no shadows: shadows.maxLights is 2");
+}
+
+TEST_P(ShadowsOnPoints, EnvironmentLightIsOccluded) {
+    // Under a wide ceiling close above, only the horizon is seen: between 0 and a tenth of the open sky's light.
+    SceneMaker maker;
+    maker.scene.environment.radiance = vec3(1);
+    maker.primitive(PrimitiveShape::Plane, {40, 1, 40}, {0, 1, 0});
+    maker.primitive(PrimitiveShape::Plane, {40, 1, 40}, {0, 0, 0});
+    ProbeOptions options;
+    options.converge = true;
+    options.frames = 128;
+    const std::vector<Seen> seen = look(maker, {{{0, 0, 0}, kUp}, {{0, 1, 0}, kUp}}, options);
+    EXPECT_LT(seen[0].lit, 0.1f * float(kPi));
+    EXPECT_NEAR(double(seen[1].lit), kPi, 0.02 * kPi);
+}
+
+TEST_P(ShadowsOnPoints, HalfTheSkyIsHalfTheLight) {
+    // A huge wall hides the directions with x < 0 from a point before it: half of πL on the ground, and a little more,
+    // as the wall ends 50 m up: atan(1/50) of the angle.
+    SceneMaker maker;
+    maker.scene.environment.radiance = vec3(1);
+    maker.primitive(PrimitiveShape::Box, {0.02, 100, 100}, {-1, 0, 0});
+    ProbeOptions options;
+    options.converge = true;
+    options.frames = 512;
+    const std::vector<Seen> seen = look(maker, {{{0, 0, 0}, kUp}}, options);
+    EXPECT_NEAR(double(seen[0].lit), kPi / 2, 0.03 * kPi);
+}
+
+} // namespace
+} // namespace tyndall::test
