@@ -109,7 +109,7 @@ Outcome runInfo(const InfoOptions& options) {
         const Result<std::string> text = describeFile(options.file);
         return text.ok() ? print(*text) : wrongInput(text.message());
     }
-    std::string text = fmt::format("tyndall {}, compiled with {}\n", TYNDALL_VERSION, __VERSION__);
+    std::string text = fmt::format("tyndall {}, compiled with GCC {}\n", TYNDALL_VERSION, __VERSION__);
     if (!options.settings) text += backendLines();
     Result<gl::Context> context = gl::Context::create();
     if (!context.ok()) {

@@ -40,14 +40,22 @@ Outcome wrongCommandLine(const CLI::App& program, const CLI::ParseError& error) 
         std::vector<std::string> names;
         for (const CLI::Option* option : command->get_options())
             for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
-        if (command == &program)
-            for (const CLI::App* each : program.get_subcommands({})) names.push_back(each->get_name());
         const std::vector<std::string_view> candidates(names.begin(), names.end());
         const std::string nearest = nearestName(word.substr(0, word.find('=')), candidates);
         message = fmt::format("'{}' is not known here{}", word, nearest.empty() ? "" : ": did you mean '" + nearest + "'?");
     }
     const std::string place = command == &program ? "" : " " + command->get_name();
     return wrongInput(fmt::format("{} ('tyndall{} --help' lists what there is)", message, place));
+}
+
+/// A first word that is no option and no command: CLI11 would only say that a command is missing.
+Outcome checkCommandName(const CLI::App& program, std::string_view word) {
+    std::vector<std::string> names;
+    for (const CLI::App* command : program.get_subcommands({})) names.push_back(command->get_name());
+    if (word.starts_with("-") || std::find(names.begin(), names.end(), word) != names.end()) return {};
+    const std::string nearest = nearestName(word, std::vector<std::string_view>(names.begin(), names.end()));
+    return wrongInput(fmt::format("'{}' is not a command: {}", word,
+                                  nearest.empty() ? "there are capture, graph and info" : "did you mean '" + nearest + "'?"));
 }
 
 int run(int argc, char** argv) {
@@ -69,6 +77,7 @@ int run(int argc, char** argv) {
         std::fputs(program.help().c_str(), stderr);
         return finish(wrongInput("say what to do: capture, graph or info"));
     }
+    if (const Outcome known = checkCommandName(program, argv[1]); !known.ok()) return finish(known);
     try {
         program.parse(argc, argv);
     } catch (const CLI::Success& wanted) { // --help, --version
