@@ -15,6 +15,7 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr uint32_t kGlbMagic = 0x46546C67, kJsonChunk = 0x4E4F534A, kBinaryChunk = 0x004E4942;
+constexpr size_t kMaxJsonBytes = size_t(1) << 29; // in memory it takes some ten times as much
 constexpr uint64_t kMaxLoadedBytes = uint64_t(16) << 30;
 
 uint32_t readWord(std::string_view bytes, size_t offset) {
@@ -124,6 +125,7 @@ Result<void> GltfFile::openContainer(std::string_view bytes) {
         while (!text.empty() && (text.back() == ' ' || text.back() == '\0')) text.remove_suffix(1);
     }
     if (text.starts_with("\xef\xbb\xbf")) return Error{path_.string() + ": the JSON begins with a byte order mark, which glTF forbids"};
+    if (text.size() > kMaxJsonBytes) return Error{fmt::format("{}: {} bytes of JSON are more than is read", path_.string(), text.size())};
     auto json = parseJson(text);
     if (!json) return Error{path_.string() + ": " + json.message()};
     json_ = std::make_shared<Json>(std::move(*json));

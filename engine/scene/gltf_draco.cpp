@@ -1,5 +1,8 @@
 // KHR_draco_mesh_compression.
+#include <algorithm>
 #include <cmath>
+#include <cstring>
+#include <span>
 
 #include <draco/compression/decode.h>
 #include <fmt/format.h>
@@ -39,6 +42,38 @@ SharedFloats readAttribute(const draco::Mesh& mesh, const draco::PointAttribute&
     return data;
 }
 
+/// LEB128, as Draco writes sizes; false at the end of the bytes.
+bool readVarint(std::span<const uint8_t> bytes, size_t& offset, uint64_t& value) {
+    value = 0;
+    for (int shift = 0; shift < 64 && offset < bytes.size(); shift += 7) {
+        const uint8_t byte = bytes[offset++];
+        value |= uint64_t(byte & 127) << shift;
+        if (byte < 128) return true;
+    }
+    return false;
+}
+
+/// The decoder believes the numbers of faces and points at the head of the stream and takes memory for them at once, so
+/// they are judged here first. Empty, or what is wrong.
+std::string wrongHeader(std::span<const uint8_t> bytes) {
+    constexpr size_t kHeader = 11; // "DRACO", version, encoder type, method, flags
+    constexpr uint64_t kSmall = uint64_t(1) << 16, kElementsPerByte = 128, kMost = uint64_t(1) << 25;
+    if (bytes.size() < kHeader || std::memcmp(bytes.data(), "DRACO", 5) != 0) return "holds data that is not Draco's";
+    const int version = bytes[5] * 256 + bytes[6];
+    if (version < 0x0202) return fmt::format("holds data of Draco version {}.{}, but 2.2 is the first that glTF has", bytes[5], bytes[6]);
+    if (bytes[7] != 1) return "holds Draco data that is not a mesh";
+    if (bytes[10] & 0x80) return "holds Draco data with metadata, which glTF does not use";
+    size_t offset = kHeader;
+    if (bytes[8] == 1) ++offset; // edgebreaker: the kind of traversal
+    for (int i = 0; i < 2; ++i) {
+        uint64_t count = 0;
+        if (!readVarint(bytes, offset, count)) return "holds Draco data that is cut short";
+        if (count > std::min(kMost, std::max(kSmall, kElementsPerByte * bytes.size())))
+            return fmt::format("claims {} elements in {} bytes of Draco data, which cannot be", count, bytes.size());
+    }
+    return {};
+}
+
 } // namespace
 
 Result<void> decodeDraco(GltfFile& file, const Json& primitive, const std::string& pointer, PrimitiveSource& source) {
@@ -46,6 +81,7 @@ Result<void> decodeDraco(GltfFile& file, const Json& primitive, const std::strin
     const std::string here = pointer + "/extensions/KHR_draco_mesh_compression";
     const auto bytes = file.viewBytes(extension.at("bufferView").get<size_t>());
     if (!bytes) return bytes.error();
+    if (const std::string wrong = wrongHeader(*bytes); !wrong.empty()) return file.at(here, wrong);
     draco::DecoderBuffer buffer;
     buffer.Init(reinterpret_cast<const char*>(bytes->data()), bytes->size());
     draco::Decoder decoder;

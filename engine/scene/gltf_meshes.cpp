@@ -1,5 +1,6 @@
 // Primitives: attributes, morph targets and skin in the rest pose, lists from strips, missing normals and tangents.
 #include <algorithm>
+#include <cmath>
 #include <unordered_map>
 
 #include <fmt/format.h>
@@ -80,7 +81,7 @@ std::vector<V> gather(const SharedFloats& data, const std::vector<uint32_t>& fro
 void normalizeAll(std::vector<vec3>& normals) {
     for (vec3& normal : normals) {
         const float length = glm::length(normal);
-        normal = length > 1e-20f ? normal / length : vec3(0, 0, 1);
+        normal = length > 1e-20f && std::isfinite(length) ? normal / length : vec3(0, 0, 1);
     }
 }
 
@@ -89,7 +90,7 @@ void normalizeTangents(Mesh& mesh) {
         vec4& tangent = mesh.tangents[i];
         const float length = glm::length(vec3(tangent)), sign = tangent.w < 0 ? -1.0f : 1.0f;
         const vec3 axis = std::abs(mesh.normals[i].x) < 0.9f ? vec3(1, 0, 0) : vec3(0, 1, 0);
-        tangent = vec4(length > 1e-20f ? vec3(tangent) / length : glm::normalize(glm::cross(mesh.normals[i], axis)), sign);
+        tangent = vec4(length > 1e-20f && std::isfinite(length) ? vec3(tangent) / length : glm::normalize(glm::cross(mesh.normals[i], axis)), sign);
     }
 }
 
@@ -248,6 +249,11 @@ Result<Mesh> GltfModel::cutToIndices(const Json& json, const std::string& pointe
 }
 
 void GltfModel::finishMesh(Mesh& mesh, const std::string& pointer) {
+    for (vec3& position : mesh.positions) // morph targets and skins can leave the range that accessors keep to
+        if (!(std::abs(position.x) <= 1e18f && std::abs(position.y) <= 1e18f && std::abs(position.z) <= 1e18f)) {
+            position = vec3(0);
+            file_.note(pointer + " has positions beyond 1e18 metres; they are moved to the origin");
+        }
     const Material& material = scene_.materialOf(mesh);
     for (const TextureRef* reference : {&material.baseColorTexture, &material.metallicRoughnessTexture, &material.normalTexture,
                                         &material.occlusionTexture, &material.emissiveTexture}) {

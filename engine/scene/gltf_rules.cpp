@@ -206,11 +206,10 @@ Result<void> checkGltfRules(const Json& gltf) {
     for (const Reference& reference : kReferences)
         if (auto valid = checkReference(gltf, reference.place, "", sizeOf(gltf, reference.target), reference.target); !valid) return valid;
     const Json& asset = gltf.at("asset");
-    for (const char* key : {"minVersion", "version"}) {
-        const std::string version = asset.value(key, std::string("2.0"));
-        if (!version.starts_with("2.")) return Error{fmt::format("/asset/{} is '{}', but only glTF 2.x is read", key, version.substr(0, 40))};
-        if (asset.contains("minVersion") && version != "2.0" && key[0] == 'm') return Error{fmt::format("/asset/minVersion is '{}', but glTF 2.0 is what is understood", version.substr(0, 40))};
-    }
+    if (const std::string version = asset.at("version").get<std::string>(); !version.starts_with("2."))
+        return Error{fmt::format("/asset/version is '{}', but only glTF 2.x is read", version.substr(0, 40))};
+    if (const std::string version = asset.value("minVersion", std::string("2.0")); version != "2.0")
+        return Error{fmt::format("/asset/minVersion is '{}', but only glTF 2.0 is understood", version.substr(0, 40))};
     return {};
 }
 

@@ -1,29 +1,34 @@
-// Bare volumes: what is supplied must be plausible.
+// Volumes, pictures and skies from files.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <random>
+
+#include "core/image.h"
 #include "scene/scene_file.h"
+#include "scene/scene_writer.h"
 #include "support/content.h"
 
 namespace tyndall {
 namespace {
 
-/// Optical depth along the longest side of the grid's box, through its middle, by a fine midpoint rule.
-double opticalDepthThrough(const Medium& medium) {
+/// What the longest side of the grid's box would be worth in optical depth if it lay in the mean density of where there is any.
+double typicalOpticalDepth(const Medium& medium) {
     const BrickGrid& grid = *medium.density;
     const Bounds box = grid.indexBounds();
-    const dvec3 worldExtent = box.transformed(grid.worldFromIndex).extent();
-    dvec3 along(0);
-    const int axis = worldExtent.x >= worldExtent.y && worldExtent.x >= worldExtent.z ? 0 : worldExtent.y >= worldExtent.z ? 1 : 2;
-    along[axis] = 1;
-    const dmat4 indexFromWorld = glm::inverse(grid.worldFromIndex);
-    const dvec3 centre = dvec3(grid.worldFromIndex * dvec4(box.centre(), 1));
-    double sum = 0;
-    constexpr int kSteps = 2000;
-    for (int i = 0; i < kSteps; ++i) {
-        const dvec3 p = centre + along * worldExtent[axis] * ((i + 0.5) / kSteps - 0.5);
-        sum += grid.sample(dvec3(indexFromWorld * dvec4(p, 1)));
+    const dvec3 extent = box.transformed(grid.worldFromIndex).extent();
+    std::mt19937 random(7);
+    std::uniform_real_distribution<double> uniform(0, 1);
+    double sum = 0, count = 0;
+    for (int i = 0; i < 200000; ++i) {
+        const dvec3 at(uniform(random), uniform(random), uniform(random));
+        const double density = grid.sample(box.minimum + at * box.extent());
+        if (density > 0) {
+            sum += density;
+            ++count;
+        }
     }
-    return sum / kSteps * worldExtent[axis] * double(medium.extinction().x);
+    return sum / count * std::max({extent.x, extent.y, extent.z}) * double(medium.extinction().x);
 }
 
 TEST(BareVolume, IsSuppliedWithMediumCameraAndLight) {
@@ -38,9 +43,7 @@ TEST(BareVolume, IsSuppliedWithMediumCameraAndLight) {
         const Medium& medium = scene.media[0];
         EXPECT_EQ(medium.kind, MediumKind::Grid);
         EXPECT_NEAR(medium.scattering.x / medium.extinction().x, 0.99f, 1e-4f);
-        const double depth = opticalDepthThrough(medium);
-        EXPECT_GT(depth, 0.5);
-        EXPECT_LT(depth, 16);
+        EXPECT_NEAR(typicalOpticalDepth(medium), 4, 1.5) << "about 4: the mean is taken over samples, here over volume";
         EXPECT_EQ(scene.nodes[size_t(0)].localTransform(), dmat4(1.0)) << "the grid's own transform is kept";
         EXPECT_NE(scene.activeCamera, kNone);
         EXPECT_FALSE(scene.worldBounds().empty());
@@ -54,6 +57,89 @@ TEST(BareVolume, LevelSetAndPointsAreRefusedByName) {
         ASSERT_FALSE(loaded.ok()) << file;
         EXPECT_NE(loaded.message().find(path.filename().string()), std::string::npos) << loaded.message();
     }
+}
+
+TEST(SceneVolumes, SequenceLoadsItsFirstFrameAndKeepsTheRest) {
+    const std::filesystem::path folder = test::scratchDir("scene-sequence");
+    const std::string puff = readFile(test::sourceDir() / "content/smoke_puff.vdb").value();
+    ASSERT_TRUE(writeFileAtomically(folder / "smoke_0007.vdb", puff).ok());
+    const std::string text = R"({
+  "tyndall": 1,
+  "name": "sequence",
+  "nodes": [
+    {
+      "name": "smoke",
+      "medium": {"type": "grid", "file": "smoke_%04d.vdb", "grid": "density", "frames": [7, 9], "fps": 12, "loop": true}
+    },
+    {"name": "eye", "camera": {"type": "perspective"}}
+  ],
+  "camera": "eye"
+}
+)";
+    ASSERT_TRUE(writeFileAtomically(folder / "s.scene.json", text).ok());
+    const auto loaded = loadScene(folder / "s.scene.json");
+    ASSERT_TRUE(loaded.ok()) << loaded.message();
+    const Scene& scene = loaded->scene;
+    EXPECT_EQ(scene.nodes[0].sequence, (GridSequence{7, 9, 12, true}));
+    ASSERT_TRUE(scene.media.at(0).density != nullptr);
+    // The puff is 2.4 m across; a brick has room for a cell more on each side.
+    EXPECT_NEAR(scene.worldBounds().extent().x, 2.4, 0.6);
+    EXPECT_EQ(sceneFileText(scene, folder).value(), text);
+}
+
+TEST(SceneVolumes, FireHasDensityAndTemperature) {
+    const auto loaded = loadScene(test::sourceDir() / "content/campfire.scene.json");
+    ASSERT_TRUE(loaded.ok()) << loaded.message();
+    const auto fire = std::find_if(loaded->scene.media.begin(), loaded->scene.media.end(), [](const Medium& m) { return m.kind == MediumKind::Grid; });
+    ASSERT_NE(fire, loaded->scene.media.end());
+    ASSERT_TRUE(fire->temperature != nullptr);
+    EXPECT_NEAR(fire->temperature->maximum, 1800, 20) << "the core: 300 K and 1500 K more";
+    EXPECT_GT(fire->temperatureScale, 0);
+}
+
+TEST(ScenePictures, EnvironmentFileIsReadAndSaved) {
+    const auto sky = REQUIRE_CONTENT("hdr/studio_small_08_1k.hdr");
+    const std::filesystem::path folder = test::scratchDir("scene-sky");
+    ASSERT_TRUE(writeFileAtomically(folder / "sky.hdr", readFile(sky).value()).ok());
+    ASSERT_TRUE(writeFileAtomically(folder / "s.scene.json", R"({"tyndall": 1, "environment": {"file": "sky.hdr", "intensity": 3, "rotation": 1.5}})").ok());
+    const auto loaded = loadScene(folder / "s.scene.json");
+    ASSERT_TRUE(loaded.ok()) << loaded.message();
+    const Environment& environment = loaded->scene.environment;
+    ASSERT_TRUE(environment.image != nullptr);
+    EXPECT_EQ(environment.image->width, 1024);
+    EXPECT_EQ(environment.image->height, 512);
+    EXPECT_EQ(environment.intensity, 3);
+    EXPECT_EQ(environment.rotation, 1.5f);
+    EXPECT_NE(sceneFileText(loaded->scene, folder).value().find(R"("environment": {"file": "sky.hdr", "intensity": 3, "rotation": 1.5})"), std::string::npos);
+}
+
+TEST(ScenePictures, TexturesAreReadByFileNameOnceEach) {
+    const auto logo = REQUIRE_CONTENT("gltf/khronos/BoxTexturedNonPowerOfTwo/CesiumLogoFlat.png");
+    const std::filesystem::path folder = test::scratchDir("scene-textures");
+    ASSERT_TRUE(writeFileAtomically(folder / "logo.png", readFile(logo).value()).ok());
+    ASSERT_TRUE(writeFileAtomically(folder / "s.scene.json", R"({"tyndall": 1, "nodes": [{"primitive": {"shape": "box"},
+        "material": {"baseColorTexture": "logo.png", "normalTexture": "logo.png"}}]})").ok());
+    const auto loaded = loadScene(folder / "s.scene.json");
+    ASSERT_TRUE(loaded.ok()) << loaded.message();
+    const Scene& scene = loaded->scene;
+    ASSERT_EQ(scene.images.size(), 1u);
+    EXPECT_EQ(scene.images[0].rgba.size(), size_t(scene.images[0].width) * size_t(scene.images[0].height) * 4);
+    EXPECT_EQ(scene.meshes.at(0).tangents.size(), scene.meshes[0].positions.size()) << "a normal texture needs tangents";
+    ASSERT_TRUE(writeFileAtomically(folder / "logo.png", "no picture").ok());
+    EXPECT_NE(loadScene(folder / "s.scene.json").message().find("/nodes/0/material/baseColorTexture is 'logo.png', but the picture is neither PNG, JPEG nor WebP"),
+              std::string::npos);
+}
+
+TEST(ScenePictures, BombsAreRefusedByTheirHeader) {
+    // A PNG header that claims 16000 x 4000 pixels, and nothing behind it.
+    const std::filesystem::path folder = test::scratchDir("scene-bomb");
+    std::string png("\x89PNG\r\n\x1a\n\0\0\0\rIHDR\0\0\x3e\x80\0\0\x0f\xa0\x08\x06\0\0\0\0\0\0\0", 33);
+    png += std::string(400, 'x');
+    ASSERT_TRUE(writeFileAtomically(folder / "bomb.png", png).ok());
+    ASSERT_TRUE(writeFileAtomically(folder / "s.scene.json", R"({"tyndall": 1, "nodes": [{"primitive": {"shape": "box"}, "material": {"baseColorTexture": "bomb.png"}}]})").ok());
+    const auto loaded = loadScene(folder / "s.scene.json");
+    ASSERT_FALSE(loaded.ok());
+    EXPECT_NE(loaded.message().find("claims 16000x4000 pixels in 433 bytes"), std::string::npos) << loaded.message();
 }
 
 } // namespace
