@@ -19,58 +19,61 @@ float rangeWindow(float range, float distance) {
 }
 
 /// KHR_lights_punctual, "Inner and Outer Cone Angles": the extension's formula, quadratic fall-off included.
-float coneAttenuation(LightData light, vec3 travel) {
-    float scale = 1.0 / max(0.001, light.axisX.w - light.axisY.w);
-    float attenuation = clamp((dot(light.direction.xyz, travel) - light.axisY.w) * scale, 0.0, 1.0);
+float coneAttenuation(uint light, vec3 travel) {
+    float outer = lights[light].axisY.w;
+    float scale = 1.0 / max(0.001, lights[light].axisX.w - outer);
+    float attenuation = clamp((dot(lights[light].direction.xyz, travel) - outer) * scale, 0.0, 1.0);
     return attenuation * attenuation;
 }
 
-LightSample sampleDirectional(LightData light) {
-    vec3 travel = light.samplePoint.w > 0.0 ? light.samplePoint.xyz : light.direction.xyz;
-    return LightSample(-travel, 1e30, light.intensity.rgb);
+// Lights are read where they are needed, field by field: loads of whole structs are what costs in a loop over many.
+
+LightSample sampleDirectional(uint light) {
+    vec3 travel = lights[light].samplePoint.w > 0.0 ? lights[light].samplePoint.xyz : lights[light].direction.xyz;
+    return LightSample(-travel, 1e30, lights[light].intensity.rgb);
 }
 
 /// Point and spot. A radius makes it a Lambertian ball of the same intensity: seen whole, it sends I/d² to a facing surface,
 /// d from its centre. Where a point on the ball is given, that point alone stands for all of it, as if spread evenly over the
 /// ball's area: 4·I·cosθ/d², d from that point, whose mean over the ball is the same.
-LightSample samplePunctual(LightData light, vec3 position) {
-    bool onBall = light.samplePoint.w > 0.0;
-    float radius = light.direction.w;
-    vec3 from = onBall ? light.samplePoint.xyz : light.position.xyz;
+LightSample samplePunctual(uint light, vec3 position) {
+    bool onBall = lights[light].samplePoint.w > 0.0;
+    float radius = lights[light].direction.w;
+    vec3 from = onBall ? lights[light].samplePoint.xyz : lights[light].position.xyz;
     vec3 toLight = from - position;
     float distance = length(toLight);
-    float nearest = light.intensity.w; // a tiny fraction of the scene
-    vec3 direction = distance > 0.0 ? toLight / distance : -light.direction.xyz;
+    float nearest = lights[light].intensity.w; // a tiny fraction of the scene
+    vec3 direction = distance > 0.0 ? toLight / distance : -lights[light].direction.xyz;
     // Inside the ball no more light arrives than on its surface.
     float counted = max(distance, onBall ? nearest : max(nearest, radius));
-    float factor = rangeWindow(light.position.w, distance) / (counted * counted);
-    if (onBall) factor *= 4.0 * max(0.0, dot(from - light.position.xyz, -direction) / radius);
-    if (light.type == kLightSpot) factor *= coneAttenuation(light, -direction);
-    return LightSample(direction, distance, light.intensity.rgb * factor);
+    float factor = rangeWindow(lights[light].position.w, distance) / (counted * counted);
+    if (onBall) factor *= 4.0 * max(0.0, dot(from - lights[light].position.xyz, -direction) / radius);
+    if (lights[light].type == kLightSpot) factor *= coneAttenuation(light, -direction);
+    return LightSample(direction, distance, lights[light].intensity.rgb * factor);
 }
 
 /// One point of the rectangle stands for all of it: radiance · cosθ · area / d². One-sided, Lambertian.
-LightSample sampleRect(LightData light, vec3 position, vec2 u) {
-    vec3 from = light.samplePoint.w > 0.0
-                    ? light.samplePoint.xyz
-                    : light.position.xyz + light.axisX.xyz * (2.0 * u.x - 1.0) + light.axisY.xyz * (2.0 * u.y - 1.0);
+LightSample sampleRect(uint light, vec3 position, vec2 u) {
+    vec3 from = lights[light].samplePoint.w > 0.0
+                    ? lights[light].samplePoint.xyz
+                    : lights[light].position.xyz + lights[light].axisX.xyz * (2.0 * u.x - 1.0) + lights[light].axisY.xyz * (2.0 * u.y - 1.0);
     vec3 toLight = from - position;
     float distance = length(toLight);
-    vec3 direction = distance > 0.0 ? toLight / distance : -light.direction.xyz;
-    float area = light.intensity.w;
-    float cosine = max(0.0, -dot(light.direction.xyz, direction));
+    vec3 direction = distance > 0.0 ? toLight / distance : -lights[light].direction.xyz;
+    float area = lights[light].intensity.w;
+    float cosine = max(0.0, -dot(lights[light].direction.xyz, direction));
     // Closer to the sampled point than a ten-thousandth of the light's size, one sample says nothing: keep it finite.
     float squared = max(distance * distance, 1e-8 * area);
-    return LightSample(direction, distance, light.intensity.rgb * (cosine * area / squared));
+    return LightSample(direction, distance, lights[light].intensity.rgb * (cosine * area / squared));
 }
 
 /// What light number `light` sends to `position` (render space). `u` (0..1) chooses the point on a rect; in converge mode that
 /// point is the frame's own, as it is for balls and for suns with a disc. Finite everywhere.
 LightSample sampleLight(uint light, vec3 position, vec2 u) {
-    LightData data = lights[light];
-    if (data.type == kLightDirectional) return sampleDirectional(data);
-    if (data.type == kLightRect) return sampleRect(data, position, u);
-    return samplePunctual(data, position);
+    uint type = lights[light].type;
+    if (type == kLightDirectional) return sampleDirectional(light);
+    if (type == kLightRect) return sampleRect(light, position, u);
+    return samplePunctual(light, position);
 }
 
 #endif

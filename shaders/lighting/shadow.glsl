@@ -47,10 +47,10 @@ float shadowDistance(float depth, float perspective, float range) {
 }
 
 /// The view of `light` that holds `position`, or -1 where no view does: nothing can stand between it and the light.
-int shadowViewOf(LightData light, vec3 position) {
-    int first = light.shadowIndex;
+int shadowViewOf(uint light, vec3 position) {
+    int first = lights[light].shadowIndex;
     int count = shadowViews[first].count;
-    if (light.type == kLightDirectional) {
+    if (lights[light].type == kLightDirectional) {
         for (int i = 0; i < count; ++i) {
             vec3 t = (shadowViews[first + i].shadowFromRender * vec4(position, 1.0)).xyz;
             float border = shadowViews[first + i].bias.w / shadowViews[first + i].atlas.z;
@@ -59,7 +59,7 @@ int shadowViewOf(LightData light, vec3 position) {
         return -1;
     }
     if (count == 1) return first;
-    vec3 d = position - (light.samplePoint.w > 0.0 ? light.samplePoint.xyz : light.position.xyz);
+    vec3 d = position - (lights[light].samplePoint.w > 0.0 ? lights[light].samplePoint.xyz : lights[light].position.xyz);
     vec3 a = abs(d);
     int axis = a.x >= a.y && a.x >= a.z ? 0 : (a.y >= a.z ? 1 : 2);
     return first + 2 * axis + (d[axis] < 0.0 ? 1 : 0);
@@ -136,15 +136,15 @@ float shadowSurfaceBias(ShadowPoint point) {
 
 /// Two vectors from the light's centre that span it as `position` sees it: metres, for directional lights metres per metre.
 /// `square`: the light is the parallelogram between ±both, else the ellipse inside.
-void shadowLightExtent(LightData light, vec3 position, out vec3 x, out vec3 y, out bool square) {
-    square = light.type == kLightRect;
+void shadowLightExtent(uint light, vec3 position, out vec3 x, out vec3 y, out bool square) {
+    square = lights[light].type == kLightRect;
     if (square) {
-        x = light.axisX.xyz;
-        y = light.axisY.xyz;
+        x = lights[light].axisX.xyz;
+        y = lights[light].axisY.xyz;
         return;
     }
-    vec3 axis = light.type == kLightDirectional ? light.direction.xyz : position - light.position.xyz;
-    float size = light.type == kLightDirectional ? tan(light.direction.w) : light.direction.w;
+    vec3 axis = lights[light].type == kLightDirectional ? lights[light].direction.xyz : position - lights[light].position.xyz;
+    float size = lights[light].type == kLightDirectional ? tan(lights[light].direction.w) : lights[light].direction.w;
     vec3 side = abs(axis.y) < 0.9 * length(axis) ? cross(axis, vec3(0, 1, 0)) : cross(axis, vec3(1, 0, 0));
     x = size * side / max(length(side), 1e-30);
     y = cross(axis, x) / max(length(axis), 1e-30);
@@ -152,22 +152,22 @@ void shadowLightExtent(LightData light, vec3 position, out vec3 x, out vec3 y, o
 
 /// Where the segment from `position` to the point `onLight` (relative to the light's centre) is, `part` (0..1) of the way
 /// from the light; seen from the light's centre that is where a caster of this point's shadow would be drawn.
-vec3 shadowOnWay(LightData light, vec3 position, vec3 onLight, float part, float reach) {
-    if (light.type == kLightDirectional) return position + (onLight - light.direction.xyz) * ((1.0 - part) * reach);
-    return mix(light.position.xyz + onLight, position, part);
+vec3 shadowOnWay(uint light, vec3 position, vec3 onLight, float part, float reach) {
+    if (lights[light].type == kLightDirectional) return position + (onLight - lights[light].direction.xyz) * ((1.0 - part) * reach);
+    return mix(lights[light].position.xyz + onLight, position, part);
 }
 
 /// `at` moved along its ray from the light onto the plane through `position`; without a plane, to the same distance.
-vec3 shadowOntoPlane(LightData light, vec3 at, vec3 position, vec3 normal, bool hasPlane) {
-    bool parallel = light.type == kLightDirectional;
-    vec3 ray = parallel ? light.direction.xyz : at - light.position.xyz;
-    vec3 plane = hasPlane ? normal : (parallel ? light.direction.xyz : normalize(position - light.position.xyz));
+vec3 shadowOntoPlane(uint light, vec3 at, vec3 position, vec3 normal, bool hasPlane) {
+    bool parallel = lights[light].type == kLightDirectional;
+    vec3 ray = parallel ? lights[light].direction.xyz : at - lights[light].position.xyz;
+    vec3 plane = hasPlane ? normal : (parallel ? lights[light].direction.xyz : normalize(position - lights[light].position.xyz));
     float along = dot(ray, plane);
-    if (abs(along) <= length(ray) / kSteepestSlope) return parallel ? at : light.position.xyz + normalize(ray) * distance(position, light.position.xyz);
+    if (abs(along) <= length(ray) / kSteepestSlope) return parallel ? at : lights[light].position.xyz + normalize(ray) * distance(position, lights[light].position.xyz);
     return at + ray * (dot(position - at, plane) / along);
 }
 
-float shadowSoft(LightData light, ShadowPoint centre, vec3 position, vec3 normal, bool hasPlane, int taps, int searchTaps, vec2 u) {
+float shadowSoft(uint light, ShadowPoint centre, vec3 position, vec3 normal, bool hasPlane, int taps, int searchTaps, vec2 u) {
     vec3 x, y;
     bool square;
     shadowLightExtent(light, position, x, y, square);
@@ -192,7 +192,7 @@ float shadowSoft(LightData light, ShadowPoint centre, vec3 position, vec3 normal
             // Half a texel of the plane's slope: the lookup is at the texel's centre, not at the point.
             float slope = 0.0;
             if (hasPlane) {
-                vec3 ray = light.type == kLightDirectional ? light.direction.xyz : normalize(onPlane - light.position.xyz);
+                vec3 ray = lights[light].type == kLightDirectional ? lights[light].direction.xyz : normalize(onPlane - lights[light].position.xyz);
                 float cosine = max(abs(dot(ray, normal)), 1.0 / kSteepestSlope);
                 slope = sqrt(max(0.0, 1.0 - cosine * cosine)) / cosine;
             }
@@ -215,9 +215,8 @@ float shadowSoft(LightData light, ShadowPoint centre, vec3 position, vec3 normal
 /// 0..1: the part of `light` that `position` (render space) sees past opaque surfaces. `offsetNormal`: the geometric normal of
 /// the surface that the point lies on, unit, either side; vec3(0) for points in media. `u` (0..1) turns the filter.
 float shadowVisibility(uint light, vec3 position, vec3 offsetNormal, vec2 u) {
-    LightData data = lights[light];
-    if (data.shadowIndex < 0) return 1.0;
-    int index = shadowViewOf(data, position);
+    if (lights[light].shadowIndex < 0) return 1.0;
+    int index = shadowViewOf(light, position);
     ShadowPoint point;
     if (index < 0 || !shadowProject(index, position, point)) return 1.0;
     bool onSurface = dot(offsetNormal, offsetNormal) > 0.0;
@@ -226,7 +225,7 @@ float shadowVisibility(uint light, vec3 position, vec3 offsetNormal, vec2 u) {
         return shadowCompare(point, ivec2(floor(point.texel)), onSurface ? shadowSurfaceBias(point) : 0.0);
     int taps = shadowViews[index].taps;
     int searchTaps = shadowViews[index].searchTaps;
-    if (searchTaps > 0) return shadowSoft(data, point, position, offsetNormal, onSurface, taps, searchTaps, u);
+    if (searchTaps > 0) return shadowSoft(light, point, position, offsetNormal, onSurface, taps, searchTaps, u);
     if (!onSurface) return shadowBilinear(point, point.texel, -kMediumBiasTexels * point.oneTexel);
     float lit = 0.0;
     for (int i = 0; i < taps; ++i)

@@ -139,12 +139,14 @@ TEST_P(ShadowsOnPoints, LitPlanesHaveNoAcneAtAnyTilt) {
         for (const double tilt : {0.0, 0.3, 0.8, 1.2, 1.4, 1.5}) {
             const dquat rotation = glm::angleAxis(tilt, glm::normalize(dvec3(1, 0, 0.3)));
             const dvec3 normal = rotation * kUp;
-            for (int kind = 0; kind < 3; ++kind) {
+            for (int kind = 0; kind < 5; ++kind) {
                 SceneMaker maker;
                 maker.primitive(PrimitiveShape::Plane, {10, 1, 10}, {0, 0, 0}, rotation);
                 if (kind == 0) maker.directionalLight(1, {0, -1, 0});
                 if (kind == 1) maker.pointLight(1, {0, 7, 0});
                 if (kind == 2) maker.light(spotLight(1, 0.9f), lookingAlong({0, 9, 0}, {0, -1, 0}));
+                if (kind == 3) maker.pointLight(1, {0, 7, 0}, 0.2f);
+                if (kind == 4) maker.directionalLight(1, {0, -1, 0}, 0.02f);
                 std::vector<Probe> probes;
                 for (int i = 0; i < 1024; ++i) probes.push_back({rotation * dvec3(4.5 * unit(random), 0, 4.5 * unit(random)), normal});
                 ProbeOptions options;
