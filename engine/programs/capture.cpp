@@ -163,6 +163,7 @@ void Capture::describe() {
     report_.glRenderer = capabilities.renderer;
     report_.glVersion = capabilities.version;
     report_.setPlan(result_.plan);
+    session_->renderer().waitForTimings();
     report_.setPasses(session_->renderer().report());
     if (options_.converge) {
         report_.iterations["converge"] = result_.accumulatedFrames;

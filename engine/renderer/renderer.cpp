@@ -170,6 +170,7 @@ Result<FrameResult> Renderer::renderFrame(const FrameRequest& request) {
 }
 
 const fg::FrameReport& Renderer::report() const { return impl_->executor.report(); }
+void Renderer::waitForTimings() { impl_->executor.waitForTimings(); }
 const fg::CompiledGraph& Renderer::graph() const { return impl_->executor.compiled(); }
 
 std::vector<std::string> Renderer::notes() const {

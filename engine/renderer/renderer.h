@@ -97,6 +97,8 @@ public:
     [[nodiscard]] uint32_t displayTexture() const;
 
     [[nodiscard]] const fg::FrameReport& report() const;
+    /// Waits for the GPU times of the frames so far and brings report() up to date with them.
+    void waitForTimings();
     /// The frame graph of the last frame as text, dot or JSON (see framegraph/dump.h).
     [[nodiscard]] const fg::CompiledGraph& graph() const;
     /// Sentences about this scene that a person should read once: lights without shadows, media that swallow the sun …

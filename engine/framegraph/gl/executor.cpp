@@ -39,7 +39,9 @@ public:
     void prepareStorage(const CompiledPass& pass);
     Result<void> countTexels(uint32_t index);
     void report(const CompiledPass& pass, uint64_t key);
+    void sumTimings();
     void finishReport();
+    void waitForTimings();
     const Storage& readable(uint32_t resource, uint32_t version, const char* what) const;
 
     ExecutorOptions options_, next_;
@@ -59,6 +61,7 @@ public:
     GlWorld world_{graph_, compiled_, persistent_, storage_, statics_, programs_, framebuffers_, samplers_, ring_, options_.poison};
     GlPassContext context_{world_};
     FrameReport report_;
+    std::vector<uint64_t> reportKeys_; // of report_.passes, for the timings
     bool executed_ = false;
 };
 
@@ -69,6 +72,7 @@ void Executor::Impl::beginFrame() {
     graph_.beginFrame();
     storage_.beginFrame(persistent_);
     report_.passes.clear(); // its texts go with the frame
+    reportKeys_.clear();
     executed_ = false;
 }
 
@@ -112,6 +116,7 @@ Result<void> Executor::Impl::runPasses() {
     timings_.beginFrame();
     if (options_.checkTexels) texelCheck_.begin(compiled_.passes.size());
     report_.passes.clear();
+    reportKeys_.clear();
     Result<void> done;
     for (uint32_t i = 0; i < compiled_.passes.size(); ++i) {
         const CompiledPass& pass = compiled_.passes[i];
@@ -177,7 +182,17 @@ Result<void> Executor::Impl::countTexels(uint32_t index) {
     return {};
 }
 
+void Executor::Impl::waitForTimings() {
+    timings_.finish();
+    for (size_t i = 0; i < report_.passes.size(); ++i) {
+        PassReport& pass = report_.passes[i];
+        (pass.status == PassStatus::Ran ? pass.gpuMs : pass.savedMs) = timings_.lastMs(reportKeys_[i]);
+    }
+    sumTimings();
+}
+
 void Executor::Impl::report(const CompiledPass& pass, uint64_t key) {
+    reportKeys_.push_back(key);
     PassReport& out = report_.passes.emplace_back();
     out.name = pass.name;
     out.status = pass.status;
@@ -186,11 +201,15 @@ void Executor::Impl::report(const CompiledPass& pass, uint64_t key) {
     (pass.status == PassStatus::Ran ? out.gpuMs : out.savedMs) = last;
 }
 
-void Executor::Impl::finishReport() {
-    report_.nonFiniteTexels = report_.negativeTexels = 0;
+void Executor::Impl::sumTimings() {
     report_.gpuMs = 0;
     for (const PassReport& pass : report_.passes)
         if (pass.status == PassStatus::Ran) report_.gpuMs = pass.gpuMs < 0 || report_.gpuMs < 0 ? -1 : report_.gpuMs + pass.gpuMs;
+}
+
+void Executor::Impl::finishReport() {
+    report_.nonFiniteTexels = report_.negativeTexels = 0;
+    sumTimings();
     if (options_.checkTexels) {
         const std::vector<TexelCheck::Counts>& counts = texelCheck_.read();
         for (size_t i = 0; i < counts.size(); ++i) {
@@ -229,6 +248,7 @@ FrameGraph& Executor::beginFrame() {
 TextureHandle Executor::findTexture(std::string_view name) const { return impl_->graph_.findTexture(name); }
 Result<void> Executor::execute() { return impl_->execute(); }
 const FrameReport& Executor::report() const { return impl_->report_; }
+void Executor::waitForTimings() { impl_->waitForTimings(); }
 const CompiledGraph& Executor::compiled() const { return impl_->compiled_; }
 void Executor::resetHistory() { impl_->persistent_.resetHistory(); }
 void Executor::forgetCachedResults() { impl_->persistent_.forgetResults(); }

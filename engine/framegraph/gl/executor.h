@@ -114,6 +114,8 @@ public:
     Result<void> execute();
 
     [[nodiscard]] const FrameReport& report() const;
+    /// Waits for the GPU times of the frames so far and brings report() up to date with them: for the end of a run.
+    void waitForTimings();
     /// The graph of the last execute(); see framegraph/dump.h.
     [[nodiscard]] const CompiledGraph& compiled() const;
 

@@ -41,11 +41,15 @@ void PassTimings::end() {
 void PassTimings::endFrame() {
     if (!enabled_) return;
     timer_.endFrame();
-    collect();
+    keep(timer_.collect());
 }
 
-void PassTimings::collect() {
-    for (const gl::FrameTimes& times : timer_.collect())
+void PassTimings::finish() {
+    if (enabled_) keep(timer_.collectAll());
+}
+
+void PassTimings::keep(const std::vector<gl::FrameTimes>& arrived) {
+    for (const gl::FrameTimes& times : arrived)
         for (const FrameKeys& frame : frames_) {
             if (frame.frame != times.frame) continue;
             for (size_t i = 0; i < std::min(frame.keys.size(), times.spans.size()); ++i)

@@ -22,6 +22,9 @@ public:
     void end();
     void endFrame();
 
+    /// Waits for all measurements that are under way.
+    void finish();
+
     /// Milliseconds of the last measurement that has arrived; −1: none.
     [[nodiscard]] double lastMs(uint64_t key) const;
 
@@ -31,7 +34,7 @@ private:
         uint64_t frame;
         uint64_t count;
     };
-    void collect();
+    void keep(const std::vector<gl::FrameTimes>& arrived);
 
     bool enabled_;
     gl::GpuTimer timer_;
