@@ -10,7 +10,8 @@ namespace {
 
 /// Empties the error flag, so that an error read afterwards is new.
 void forgetErrors() {
-    while (glGetError() != GL_NO_ERROR) {}
+    while (glGetError() != GL_NO_ERROR) {
+    }
 }
 
 } // namespace
@@ -18,7 +19,8 @@ void forgetErrors() {
 Result<Buffer> Buffer::create(std::string_view name, uint64_t bytes, BufferAccess access, const void* data) {
     CHECK(bytes > 0, fmt::format("buffer '{}' needs a size", name));
     constexpr uint64_t kMostBytes = uint64_t(1) << 46; // more than any GPU addresses; larger sizes overflow in drivers
-    if (bytes > kMostBytes) return Error{fmt::format("buffer '{}' of {} bytes is larger than any GPU's memory", name, bytes)};
+    if (bytes > kMostBytes)
+        return Error{fmt::format("buffer '{}' of {} bytes is larger than any GPU's memory", name, bytes)};
     GLuint id = 0;
     glCreateBuffers(1, &id);
     forgetErrors();
@@ -34,7 +36,9 @@ Result<Buffer> Buffer::create(std::string_view name, uint64_t bytes, BufferAcces
     return buffer;
 }
 
-Buffer::Buffer(std::string_view name, uint64_t bytes, BufferAccess access) { *this = std::move(create(name, bytes, access).value()); }
+Buffer::Buffer(std::string_view name, uint64_t bytes, BufferAccess access) {
+    *this = std::move(create(name, bytes, access).value());
+}
 
 Buffer::Buffer(std::string_view name, std::span<const std::byte> data, BufferAccess access) {
     *this = std::move(create(name, data.size(), access, data.data()).value());
@@ -42,12 +46,14 @@ Buffer::Buffer(std::string_view name, std::span<const std::byte> data, BufferAcc
 
 void Buffer::write(uint64_t offset, const void* data, uint64_t size) {
     CHECK(access_ == BufferAccess::CpuUpdates, "write() needs a buffer made with CpuUpdates");
-    CHECK(offset <= bytes() && size <= bytes() - offset, fmt::format("write of {} bytes at {} into a buffer of {}", size, offset, bytes()));
+    CHECK(offset <= bytes() && size <= bytes() - offset,
+          fmt::format("write of {} bytes at {} into a buffer of {}", size, offset, bytes()));
     if (size > 0) glNamedBufferSubData(id(), GLintptr(offset), GLsizeiptr(size), data);
 }
 
 void Buffer::copyFrom(GLuint source, uint64_t sourceOffset, uint64_t offset, uint64_t size) {
-    CHECK(offset <= bytes() && size <= bytes() - offset, fmt::format("copy of {} bytes to {} of a buffer of {}", size, offset, bytes()));
+    CHECK(offset <= bytes() && size <= bytes() - offset,
+          fmt::format("copy of {} bytes to {} of a buffer of {}", size, offset, bytes()));
     if (size > 0) glCopyNamedBufferSubData(source, id(), GLintptr(sourceOffset), GLintptr(offset), GLsizeiptr(size));
 }
 
@@ -57,7 +63,8 @@ void Buffer::clear(uint32_t value) {
 }
 
 void Buffer::read(uint64_t offset, void* data, uint64_t size) const {
-    CHECK(offset <= bytes() && size <= bytes() - offset, fmt::format("read of {} bytes at {} from a buffer of {}", size, offset, bytes()));
+    CHECK(offset <= bytes() && size <= bytes() - offset,
+          fmt::format("read of {} bytes at {} from a buffer of {}", size, offset, bytes()));
     if (size == 0) return;
     glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT); // shaders may have written it
     glGetNamedBufferSubData(id(), GLintptr(offset), GLsizeiptr(size), data);
@@ -91,8 +98,8 @@ void UploadRing::freePassed() {
     std::erase_if(retired_, [this](const Retired& retired) { return retired.frame < oldestFrame_; });
 }
 
-/// True when everything up to `end` fits behind the tail. Waits for a frame only when many are on their way: a ring that is
-/// merely too short for the frames that the GPU may be behind grows instead.
+/// True when everything up to `end` fits behind the tail. Waits for a frame only when many are on their way: a ring
+/// that is merely too short for the frames that the GPU may be behind grows instead.
 bool UploadRing::makeRoom(uint64_t end) {
     constexpr size_t kFramesInFlight = 3;
     if (end - tail_ <= capacity_) return true;
@@ -118,7 +125,8 @@ void UploadRing::grow(uint64_t bytes) {
 UploadRing::Slice UploadRing::allocate(uint64_t bytes, uint64_t alignment) {
     CHECK(object_, "the ring is empty");
     CHECK(bytes > 0, fmt::format("ring '{}': allocation of no bytes", name_));
-    CHECK(alignment > 0 && (alignment & (alignment - 1)) == 0, fmt::format("alignment {} is no power of two", alignment));
+    CHECK(alignment > 0 && (alignment & (alignment - 1)) == 0,
+          fmt::format("alignment {} is no power of two", alignment));
     if (bytes > capacity_) grow(bytes);
     const auto start = [&] {
         uint64_t position = head_ % capacity_;

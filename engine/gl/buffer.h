@@ -35,7 +35,8 @@ public:
     [[nodiscard]] uint64_t bytes() const { return uint64_t(object_.bytes()); }
     explicit operator bool() const { return bool(object_); }
 
-    /// Copies `data` to `offset` (bytes). The driver orders it after the commands before. CHECKs: CpuUpdates, inside the buffer.
+    /// Copies `data` to `offset` (bytes). The driver orders it after the commands before. CHECKs: CpuUpdates, inside
+    /// the buffer.
     void write(uint64_t offset, const void* data, uint64_t bytes);
     /// Copies from `source`, GPU to GPU.
     void copyFrom(GLuint source, uint64_t sourceOffset, uint64_t offset, uint64_t bytes);
@@ -43,8 +44,7 @@ public:
     void clear(uint32_t value = 0);
     /// Waits for the GPU and copies to `data`: for tests and ends of captures.
     void read(uint64_t offset, void* data, uint64_t bytes) const;
-    template <typename T>
-    [[nodiscard]] std::vector<T> readAll() const {
+    template <typename T> [[nodiscard]] std::vector<T> readAll() const {
         std::vector<T> values(size_t(bytes()) / sizeof(T));
         read(0, values.data(), values.size() * sizeof(T));
         return values;
@@ -55,8 +55,9 @@ private:
     BufferAccess access_ = BufferAccess::GpuOnly;
 };
 
-/// Memory that CPU and GPU share, handed out in order and taken back when the GPU has passed it: uniform blocks and uploads of a frame.
-/// Grows when a frame needs more than there is; waits only when the GPU is further behind than the ring is long.
+/// Memory that CPU and GPU share, handed out in order and taken back when the GPU has passed it: uniform blocks and
+/// uploads of a frame. Grows when a frame needs more than there is; waits only when the GPU is further behind than the
+/// ring is long.
 class UploadRing {
 public:
     /// A piece of the ring, to be written before the next GL command reads it. Valid until the end of the frame.
@@ -105,7 +106,7 @@ private:
     uint64_t capacity_ = 0;
     uint64_t head_ = 0; // both grow without wrapping; the position in memory is the rest modulo capacity_
     uint64_t tail_ = 0;
-    uint64_t frame_ = 0;      // being recorded
+    uint64_t frame_ = 0;       // being recorded
     uint64_t oldestFrame_ = 0; // of frames_
     std::deque<Frame> frames_;
     std::vector<Retired> retired_;

@@ -56,8 +56,10 @@ Limits queryLimits(bool anisotropic) {
 
 constexpr WorkaroundInfo kWorkarounds[] = {
     {Workaround::FlushTimestamps, "flush-timestamps", "llvmpipe",
-     "compute shaders run while they are recorded, but timestamps are taken when the draws recorded with them are rasterised: without "
-     "a flush after each timestamp, compute work seems to take no time (Mesa 22.3; GpuTimerTest.ComputeWorkHasItsTime)"},
+     "compute shaders run while they are recorded, but timestamps are taken when the draws recorded with them are "
+     "rasterised: without "
+     "a flush after each timestamp, compute work seems to take no time (Mesa 22.3; "
+     "GpuTimerTest.ComputeWorkHasItsTime)"},
 };
 
 } // namespace

@@ -13,7 +13,7 @@ namespace tyndall::gl {
 
 /// Numbers that the wrappers check against. OpenGL 4.5 guarantees a least value for each.
 struct Limits {
-    int textureSize = 0;              // texels along an edge, 2D
+    int textureSize = 0; // texels along an edge, 2D
     int texture3DSize = 0;
     int textureLayers = 0;
     int textureUnitsPerStage = 0;
@@ -21,19 +21,19 @@ struct Limits {
     int imageUnits = 0;
     int uniformBufferBindings = 0;
     int64_t uniformBlockBytes = 0;
-    int uniformBufferAlignment = 0;   // bytes
+    int uniformBufferAlignment = 0; // bytes
     int storageBufferBindings = 0;
     int computeStorageBlocks = 0;
     int64_t storageBlockBytes = 0;
-    int storageBufferAlignment = 0;   // bytes
+    int storageBufferAlignment = 0; // bytes
     int computeSharedBytes = 0;
-    int computeInvocations = 0;       // of one group
-    ivec3 computeGroups{0};           // of one dispatch
+    int computeInvocations = 0; // of one group
+    ivec3 computeGroups{0};     // of one dispatch
     ivec3 computeGroupSize{0};
     int colorAttachments = 0;
-    int timestampBits = 0;            // 0: no GPU times
-    float anisotropy = 1.0f;          // 1: no anisotropic filter
-    int labelLength = 0;              // bytes
+    int timestampBits = 0;   // 0: no GPU times
+    float anisotropy = 1.0f; // 1: no anisotropic filter
+    int labelLength = 0;     // bytes
 };
 
 /// Behaviour of a driver that the code avoids. Each has a row in the table in capabilities.cpp with driver and reason.

@@ -16,7 +16,8 @@ namespace {
 
 thread_local Context::State* gCurrent = nullptr;
 
-/// The contexts of the process: which exist, and whose functions gl/api.h holds. Process-wide because glad's pointers are.
+/// The contexts of the process: which exist, and whose functions gl/api.h holds. Process-wide because glad's pointers
+/// are.
 struct Registry {
     std::mutex mutex;
     uint64_t lastSerial = 0;
@@ -52,7 +53,10 @@ std::set<std::string, std::less<>> disabledExtensions(const ContextOptions& opti
     const char* listed = std::getenv("TYNDALL_GL_DISABLE");
     std::string name;
     for (const char* c = listed ? listed : ""; *c != '\0'; ++c) {
-        if (*c != ',' && *c != ' ') { name += *c; continue; }
+        if (*c != ',' && *c != ' ') {
+            name += *c;
+            continue;
+        }
         if (!name.empty()) names.insert(std::exchange(name, {}));
     }
     if (!name.empty()) names.insert(name);
@@ -87,7 +91,8 @@ Result<Context> makeOnHardware(const ContextOptions& options) {
     return Error{failures};
 }
 
-Result<Context> tryInOrder(std::span<const Candidate> candidates, const ContextOptions& options, std::string& failures) {
+Result<Context> tryInOrder(std::span<const Candidate> candidates, const ContextOptions& options,
+                           std::string& failures) {
     for (const Candidate& candidate : candidates) {
         Result<Context> context = candidate.make(options);
         if (context) return context;
@@ -134,7 +139,8 @@ Result<Context> Context::create(const ContextOptions& options) {
     std::string failures;
     Result<Context> context = tryInOrder(candidates, options, failures);
     if (context && !failures.empty())
-        context->state_->choice = fmt::format("rendering with {} because these were not to be had: {}", context->backendName(), failures);
+        context->state_->choice =
+            fmt::format("rendering with {} because these were not to be had: {}", context->backendName(), failures);
     return context;
 }
 
@@ -182,7 +188,8 @@ Result<Context> Context::adopt(std::unique_ptr<ContextPlatform> platform, const 
     state->capabilities = Capabilities::query(disabledExtensions(options));
     state->choice = fmt::format("rendering with {}", state->platform->name());
     if (options.debug != DebugMode::Off)
-        state->debugLog.install(state->capabilities.vendor + " " + state->capabilities.renderer, options.debug == DebugMode::Synchronous);
+        state->debugLog.install(state->capabilities.vendor + " " + state->capabilities.renderer,
+                                options.debug == DebugMode::Synchronous);
     setConventions();
     return Context(std::move(state));
 }

@@ -1,8 +1,8 @@
 #pragma once
 // An OpenGL 4.5 core context, with or without a display. Made by factory functions that say why when they cannot.
 //
-// The functions of gl/api.h are one set for the process and belong to the context that was made current last, so one kind of
-// context is current at a time, on one thread.
+// The functions of gl/api.h are one set for the process and belong to the context that was made current last, so one
+// kind of context is current at a time, on one thread.
 
 #include <memory>
 #include <string>
@@ -38,7 +38,8 @@ struct ContextOptions {
     Backend backend = Backend::Auto;
     int device = -1; // of eglDevices(); -1: the first hardware device, else none
     DebugMode debug = kDefaultDebugMode;
-    /// Extensions to behave as if absent, beside those in the environment variable TYNDALL_GL_DISABLE (comma-separated).
+    /// Extensions to behave as if absent, beside those in the environment variable TYNDALL_GL_DISABLE
+    /// (comma-separated).
     std::vector<std::string> disabledExtensions{};
 };
 
@@ -53,7 +54,8 @@ public:
     [[nodiscard]] virtual void* getProcAddress(const char* function) = 0;
 };
 
-/// One GL context. Empty when moved from. Objects made in it must go before it does: those that are left are logged as leaks.
+/// One GL context. Empty when moved from. Objects made in it must go before it does: those that are left are logged as
+/// leaks.
 class Context {
 public:
     /// The context that the options ask for. Auto: EGL on a hardware device, then EGL surfaceless, then OSMesa.
@@ -75,7 +77,8 @@ public:
     ~Context();
 
     explicit operator bool() const { return state_ != nullptr; }
-    /// Makes the context current on this thread and, if another was current last, loads its functions. A factory has done so already.
+    /// Makes the context current on this thread and, if another was current last, loads its functions. A factory has
+    /// done so already.
     void makeCurrent();
     /// Leaves this thread without a context if this one is current.
     void release();

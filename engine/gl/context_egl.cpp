@@ -1,5 +1,5 @@
-// Contexts without a window by EGL: on a device, or on Mesa's surfaceless platform. libEGL is loaded at run time, so that a
-// machine without it gets a sentence instead of a loader error.
+// Contexts without a window by EGL: on a device, or on Mesa's surfaceless platform. libEGL is loaded at run time, so
+// that a machine without it gets a sentence instead of a loader error.
 
 #include <dlfcn.h>
 #include <fmt/format.h>
@@ -54,9 +54,11 @@ bool listed(std::string_view extensions, std::string_view name) {
 
 EglLibrary openEgl() {
     EglLibrary egl;
-    // Mesa prints what it tried on the way to a driver; what matters is in the sentences returned here. A user's own level stays.
+    // Mesa prints what it tried on the way to a driver; what matters is in the sentences returned here. A user's own
+    // level stays.
     setenv("EGL_LOG_LEVEL", "fatal", 0);
-    void* library = dlopen("libEGL.so.1", RTLD_NOW | RTLD_LOCAL); // never closed: drivers leave thread-local destructors behind
+    void* library =
+        dlopen("libEGL.so.1", RTLD_NOW | RTLD_LOCAL); // never closed: drivers leave thread-local destructors behind
     if (library == nullptr) {
         egl.failure = "libEGL.so.1 is not installed";
         return egl;
@@ -76,11 +78,14 @@ EglLibrary openEgl() {
     const char* extensions = egl.queryString(EGL_NO_DISPLAY, EGL_EXTENSIONS);
     egl.clientExtensions = extensions ? extensions : "";
     if (listed(egl.clientExtensions, "EGL_EXT_platform_base"))
-        egl.getPlatformDisplay = reinterpret_cast<PFNEGLGETPLATFORMDISPLAYEXTPROC>(egl.getProcAddress("eglGetPlatformDisplayEXT"));
+        egl.getPlatformDisplay =
+            reinterpret_cast<PFNEGLGETPLATFORMDISPLAYEXTPROC>(egl.getProcAddress("eglGetPlatformDisplayEXT"));
     if (egl.getPlatformDisplay == nullptr) egl.failure = "libEGL lacks EGL_EXT_platform_base";
-    if (listed(egl.clientExtensions, "EGL_EXT_device_enumeration") || listed(egl.clientExtensions, "EGL_EXT_device_base")) {
+    if (listed(egl.clientExtensions, "EGL_EXT_device_enumeration") ||
+        listed(egl.clientExtensions, "EGL_EXT_device_base")) {
         egl.queryDevices = reinterpret_cast<PFNEGLQUERYDEVICESEXTPROC>(egl.getProcAddress("eglQueryDevicesEXT"));
-        egl.queryDeviceString = reinterpret_cast<PFNEGLQUERYDEVICESTRINGEXTPROC>(egl.getProcAddress("eglQueryDeviceStringEXT"));
+        egl.queryDeviceString =
+            reinterpret_cast<PFNEGLQUERYDEVICESTRINGEXTPROC>(egl.getProcAddress("eglQueryDeviceStringEXT"));
     }
     return egl;
 }
@@ -174,30 +179,42 @@ Result<EGLConfig> chooseConfig(const Display& display, std::string_view extensio
     return Error{fmt::format("{}: EGL has no configuration for OpenGL", name)};
 }
 
-Result<std::unique_ptr<ContextPlatform>> makePlatform(std::shared_ptr<Display> display, const char* name, DebugMode debug) {
+Result<std::unique_ptr<ContextPlatform>> makePlatform(std::shared_ptr<Display> display, const char* name,
+                                                      DebugMode debug) {
     const EglLibrary& egl = eglLibrary();
     const char* text = egl.queryString(display->handle(), EGL_EXTENSIONS);
     const std::string extensions = text ? text : "";
     if (!listed(extensions, "EGL_KHR_surfaceless_context"))
-        return Error{fmt::format("{}: EGL lacks EGL_KHR_surfaceless_context, so there is no context without a surface", name)};
-    if (!egl.bindApi(EGL_OPENGL_API)) return Error{fmt::format("{}: this EGL has OpenGL ES only, and OpenGL is needed", name)};
+        return Error{
+            fmt::format("{}: EGL lacks EGL_KHR_surfaceless_context, so there is no context without a surface", name)};
+    if (!egl.bindApi(EGL_OPENGL_API))
+        return Error{fmt::format("{}: this EGL has OpenGL ES only, and OpenGL is needed", name)};
     const Result<EGLConfig> config = chooseConfig(*display, extensions, name);
     if (!config) return config.error();
-    const EGLint attributes[] = {EGL_CONTEXT_MAJOR_VERSION, 4, EGL_CONTEXT_MINOR_VERSION, 5,
-                                 EGL_CONTEXT_OPENGL_PROFILE_MASK, EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
-                                 EGL_CONTEXT_OPENGL_DEBUG, debug == DebugMode::Off ? EGL_FALSE : EGL_TRUE, EGL_NONE};
+    const EGLint attributes[] = {EGL_CONTEXT_MAJOR_VERSION,
+                                 4,
+                                 EGL_CONTEXT_MINOR_VERSION,
+                                 5,
+                                 EGL_CONTEXT_OPENGL_PROFILE_MASK,
+                                 EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
+                                 EGL_CONTEXT_OPENGL_DEBUG,
+                                 debug == DebugMode::Off ? EGL_FALSE : EGL_TRUE,
+                                 EGL_NONE};
     const EGLContext context = egl.createContext(display->handle(), *config, EGL_NO_CONTEXT, attributes);
     if (context == EGL_NO_CONTEXT)
-        return Error{fmt::format("{}: the driver refuses an OpenGL 4.5 core context ({})", name, eglErrorName(egl.getError()))};
+        return Error{
+            fmt::format("{}: the driver refuses an OpenGL 4.5 core context ({})", name, eglErrorName(egl.getError()))};
     return std::unique_ptr<ContextPlatform>(std::make_unique<EglPlatform>(name, std::move(display), context));
 }
 
 Result<std::vector<EGLDeviceEXT>> deviceHandles() {
     const EglLibrary& egl = eglLibrary();
     if (!egl.failure.empty()) return Error{egl.failure};
-    if (egl.queryDevices == nullptr || egl.queryDeviceString == nullptr) return Error{"libEGL cannot list devices (EGL_EXT_device_enumeration)"};
+    if (egl.queryDevices == nullptr || egl.queryDeviceString == nullptr)
+        return Error{"libEGL cannot list devices (EGL_EXT_device_enumeration)"};
     EGLint count = 0;
-    if (!egl.queryDevices(0, nullptr, &count)) return Error{fmt::format("libEGL cannot list devices ({})", eglErrorName(egl.getError()))};
+    if (!egl.queryDevices(0, nullptr, &count))
+        return Error{fmt::format("libEGL cannot list devices ({})", eglErrorName(egl.getError()))};
     std::vector<EGLDeviceEXT> handles{size_t(count)};
     if (count > 0 && !egl.queryDevices(count, handles.data(), &count))
         return Error{fmt::format("libEGL cannot list devices ({})", eglErrorName(egl.getError()))};
@@ -218,7 +235,8 @@ Result<std::vector<EglDevice>> eglDevices() {
         const char* text = egl.queryDeviceString(handle, EGL_EXTENSIONS);
         const std::string_view extensions = text ? text : "";
         device.software = listed(extensions, "EGL_MESA_device_software");
-        const char* file = listed(extensions, "EGL_EXT_device_drm") ? egl.queryDeviceString(handle, EGL_DRM_DEVICE_FILE_EXT) : nullptr;
+        const char* file =
+            listed(extensions, "EGL_EXT_device_drm") ? egl.queryDeviceString(handle, EGL_DRM_DEVICE_FILE_EXT) : nullptr;
         device.description = device.software ? "software" : file ? file : fmt::format("EGL device {}", device.index);
         devices.push_back(std::move(device));
     }
@@ -229,10 +247,12 @@ Result<std::unique_ptr<ContextPlatform>> makeEglDevicePlatform(int index, DebugM
     const Result<std::vector<EGLDeviceEXT>> handles = deviceHandles();
     if (!handles) return handles.error();
     if (index < 0 || size_t(index) >= handles->size())
-        return Error{fmt::format("device {} does not exist: EGL lists {} device{}, counted from 0", index, handles->size(),
-                                 handles->size() == 1 ? "" : "s")};
-    if (!listed(eglLibrary().clientExtensions, "EGL_EXT_platform_device")) return Error{"libEGL lacks EGL_EXT_platform_device"};
-    Result<std::shared_ptr<Display>> display = openDisplay(EGL_PLATFORM_DEVICE_EXT, (*handles)[size_t(index)], "egl-device");
+        return Error{fmt::format("device {} does not exist: EGL lists {} device{}, counted from 0", index,
+                                 handles->size(), handles->size() == 1 ? "" : "s")};
+    if (!listed(eglLibrary().clientExtensions, "EGL_EXT_platform_device"))
+        return Error{"libEGL lacks EGL_EXT_platform_device"};
+    Result<std::shared_ptr<Display>> display =
+        openDisplay(EGL_PLATFORM_DEVICE_EXT, (*handles)[size_t(index)], "egl-device");
     if (!display) return display.error();
     return makePlatform(std::move(*display), "egl-device", debug);
 }
@@ -240,8 +260,10 @@ Result<std::unique_ptr<ContextPlatform>> makeEglDevicePlatform(int index, DebugM
 Result<std::unique_ptr<ContextPlatform>> makeEglSurfacelessPlatform(DebugMode debug) {
     const EglLibrary& egl = eglLibrary();
     if (!egl.failure.empty()) return Error{egl.failure};
-    if (!listed(egl.clientExtensions, "EGL_MESA_platform_surfaceless")) return Error{"libEGL lacks EGL_MESA_platform_surfaceless"};
-    Result<std::shared_ptr<Display>> display = openDisplay(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, "egl-surfaceless");
+    if (!listed(egl.clientExtensions, "EGL_MESA_platform_surfaceless"))
+        return Error{"libEGL lacks EGL_MESA_platform_surfaceless"};
+    Result<std::shared_ptr<Display>> display =
+        openDisplay(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, "egl-surfaceless");
     if (!display) return display.error();
     return makePlatform(std::move(*display), "egl-surfaceless", debug);
 }

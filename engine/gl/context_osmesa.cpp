@@ -1,5 +1,5 @@
-// Contexts by Mesa's off-screen library, loaded at run time: newer Mesa no longer has it. Its interface is declared here, so that no
-// header of it is needed either (values: Mesa's include/GL/osmesa.h, OSMesa 9 and later).
+// Contexts by Mesa's off-screen library, loaded at run time: newer Mesa no longer has it. Its interface is declared
+// here, so that no header of it is needed either (values: Mesa's include/GL/osmesa.h, OSMesa 9 and later).
 
 #include <dlfcn.h>
 #include <fmt/format.h>
@@ -72,7 +72,9 @@ public:
         return Error{"osmesa: the context cannot be made current"};
     }
     void releaseCurrent() override { osmesaLibrary().makeCurrent(nullptr, nullptr, 0, 0, 0); }
-    [[nodiscard]] void* getProcAddress(const char* function) override { return osmesaLibrary().getProcAddress(function); }
+    [[nodiscard]] void* getProcAddress(const char* function) override {
+        return osmesaLibrary().getProcAddress(function);
+    }
 
 private:
     // OSMesa wants memory for its window; everything is drawn to framebuffer objects, so the smallest will do.
@@ -86,8 +88,21 @@ private:
 Result<std::unique_ptr<ContextPlatform>> makeOsmesaPlatform() {
     const OsmesaLibrary& osmesa = osmesaLibrary();
     if (!osmesa.failure.empty()) return Error{osmesa.failure};
-    const int attributes[] = {kOsmesaFormat, GL_RGBA, kOsmesaDepthBits, 0, kOsmesaStencilBits, 0, kOsmesaAccumBits, 0,
-                              kOsmesaProfile, kOsmesaCoreProfile, kOsmesaMajorVersion, 4, kOsmesaMinorVersion, 5, 0};
+    const int attributes[] = {kOsmesaFormat,
+                              GL_RGBA,
+                              kOsmesaDepthBits,
+                              0,
+                              kOsmesaStencilBits,
+                              0,
+                              kOsmesaAccumBits,
+                              0,
+                              kOsmesaProfile,
+                              kOsmesaCoreProfile,
+                              kOsmesaMajorVersion,
+                              4,
+                              kOsmesaMinorVersion,
+                              5,
+                              0};
     OsmesaContext context = osmesa.createContextAttribs(attributes, nullptr);
     if (context == nullptr) return Error{"osmesa: the driver refuses an OpenGL 4.5 core context"};
     return std::unique_ptr<ContextPlatform>(std::make_unique<OsmesaPlatform>(context));

@@ -9,8 +9,8 @@
 namespace tyndall::gl {
 namespace {
 
-// Every row with its reason. What is of high severity is never dropped, but for the compiler's messages: those come back from the
-// compilation itself, with files and lines (Program::build, Program::warnings).
+// Every row with its reason. What is of high severity is never dropped, but for the compiler's messages: those come
+// back from the compilation itself, with files and lines (Program::build, Program::warnings).
 constexpr HarmlessMessage kHarmless[] = {
     {"", GL_DEBUG_SOURCE_APPLICATION, GL_DEBUG_TYPE_PUSH_GROUP, 0, "", "our own debug group opens"},
     {"", GL_DEBUG_SOURCE_APPLICATION, GL_DEBUG_TYPE_POP_GROUP, 0, "", "our own debug group closes"},
@@ -20,8 +20,10 @@ constexpr HarmlessMessage kHarmless[] = {
      "a unit holds a texture without the mips that its sampler filters; no program reads it"},
     {"NVIDIA", GL_DEBUG_SOURCE_API, GL_DEBUG_TYPE_PERFORMANCE, 131154, "",
      "a read-back waits for the drawing before it, which is what a read-back is for"},
-    {"NVIDIA", GL_DEBUG_SOURCE_API, GL_DEBUG_TYPE_PERFORMANCE, 131186, "", "a buffer that is read back moves to the host"},
-    {"NVIDIA", GL_DEBUG_SOURCE_API, GL_DEBUG_TYPE_PERFORMANCE, 131218, "", "a program is compiled again for the state of its first draw"},
+    {"NVIDIA", GL_DEBUG_SOURCE_API, GL_DEBUG_TYPE_PERFORMANCE, 131186, "",
+     "a buffer that is read back moves to the host"},
+    {"NVIDIA", GL_DEBUG_SOURCE_API, GL_DEBUG_TYPE_PERFORMANCE, 131218, "",
+     "a program is compiled again for the state of its first draw"},
     {"", GL_DEBUG_SOURCE_SHADER_COMPILER, GL_DONT_CARE, 0, "",
      "errors and warnings of a shader are returned by its compilation, and statistics of the compiler mean nothing"},
 };
@@ -89,7 +91,8 @@ struct DebugLog::State {
         std::string place;
         for (const std::string& group : openGroups()) place += (place.empty() ? "" : " > ") + group;
         while (!text.empty() && (text.back() == '\n' || text.back() == ' ')) text.remove_suffix(1);
-        const std::string sentence = fmt::format("GL {} {}{}{}: {}", typeName(type), id, place.empty() ? "" : " in ", place, text);
+        const std::string sentence =
+            fmt::format("GL {} {}{}{}: {}", typeName(type), id, place.empty() ? "" : " in ", place, text);
         {
             std::lock_guard lock(mutex);
             const bool mayDrop = severity != Severity::High || source == GL_DEBUG_SOURCE_SHADER_COMPILER;
@@ -105,8 +108,8 @@ struct DebugLog::State {
 };
 
 namespace {
-void GLAD_API_PTR onMessage(GLenum source, GLenum type, GLuint id, GLenum severity, GLsizei length, const GLchar* message,
-                            const void* state) {
+void GLAD_API_PTR onMessage(GLenum source, GLenum type, GLuint id, GLenum severity, GLsizei length,
+                            const GLchar* message, const void* state) {
     const std::string_view text = length >= 0 ? std::string_view(message, size_t(length)) : std::string_view(message);
     static_cast<DebugLog::State*>(const_cast<void*>(state))->receive(source, type, id, severity, text);
 }
@@ -149,8 +152,10 @@ void DebugLog::reset() {
 void DebugLog::install(std::string driver, bool synchronous) {
     state_->driver = std::move(driver);
     glEnable(GL_DEBUG_OUTPUT);
-    if (synchronous) glEnable(GL_DEBUG_OUTPUT_SYNCHRONOUS);
-    else glDisable(GL_DEBUG_OUTPUT_SYNCHRONOUS);
+    if (synchronous)
+        glEnable(GL_DEBUG_OUTPUT_SYNCHRONOUS);
+    else
+        glDisable(GL_DEBUG_OUTPUT_SYNCHRONOUS);
     glDebugMessageControl(GL_DONT_CARE, GL_DONT_CARE, GL_DONT_CARE, 0, nullptr, GL_TRUE);
     glDebugMessageCallback(onMessage, state_.get());
 }

@@ -18,16 +18,17 @@ const char* severityName(Severity severity);
 
 /// A message that a driver sends in sound programs, with the reason why it is dropped.
 struct HarmlessMessage {
-    const char* vendor;   // part of GL_VENDOR or GL_RENDERER; "" for all
-    GLenum source;        // GL_DONT_CARE: any
-    GLenum type;          // GL_DONT_CARE: any
-    GLuint id;            // 0: any
-    const char* text;     // part of the message; "" for any
+    const char* vendor; // part of GL_VENDOR or GL_RENDERER; "" for all
+    GLenum source;      // GL_DONT_CARE: any
+    GLenum type;        // GL_DONT_CARE: any
+    GLuint id;          // 0: any
+    const char* text;   // part of the message; "" for any
     const char* reason;
 };
 std::span<const HarmlessMessage> harmlessMessages();
 
-/// Counts what the driver says, remembers the worst and logs each sentence once. Thread-safe, since drivers may call from their threads.
+/// Counts what the driver says, remembers the worst and logs each sentence once. Thread-safe, since drivers may call
+/// from their threads.
 class DebugLog {
 public:
     DebugLog();

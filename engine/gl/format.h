@@ -7,13 +7,18 @@
 
 namespace tyndall::gl {
 
-enum class FormatClass : uint32_t { Float = 0, UnsignedInt = 1, SignedInt = 2, Depth = 3 }; // Float: also normalised ones
+enum class FormatClass : uint32_t {
+    Float = 0,
+    UnsignedInt = 1,
+    SignedInt = 2,
+    Depth = 3
+}; // Float: also normalised ones
 
 struct FormatInfo {
     GLenum internalFormat;
-    const char* name;       // "RGBA32F"
-    GLenum transferFormat;  // GL_RGBA, GL_RED_INTEGER, GL_DEPTH_COMPONENT …
-    GLenum transferType;    // the type that holds its texels without conversion
+    const char* name;      // "RGBA32F"
+    GLenum transferFormat; // GL_RGBA, GL_RED_INTEGER, GL_DEPTH_COMPONENT …
+    GLenum transferType;   // the type that holds its texels without conversion
     uint32_t channels;
     uint32_t bytesPerTexel;
     FormatClass formatClass;

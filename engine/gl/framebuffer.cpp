@@ -30,8 +30,9 @@ std::string describe(std::span<const Attachment> colors, const Attachment* depth
     std::string text;
     const auto add = [&](const Attachment& attachment) {
         const TextureSpec& spec = attachment.texture->spec();
-        text += fmt::format("{}{} {}x{}x{} mip {} layer {}", text.empty() ? "" : ", ", formatInfo(spec.internalFormat).name, spec.width,
-                            spec.height, spec.depth, attachment.mip, attachment.layer);
+        text +=
+            fmt::format("{}{} {}x{}x{} mip {} layer {}", text.empty() ? "" : ", ", formatInfo(spec.internalFormat).name,
+                        spec.width, spec.height, spec.depth, attachment.mip, attachment.layer);
     };
     for (const Attachment& color : colors) add(color);
     if (depth != nullptr) add(*depth);
@@ -43,7 +44,8 @@ constexpr uint64_t kKeptFrames = 16;
 } // namespace
 
 GLuint FramebufferCache::get(std::span<const Attachment> colors, const Attachment* depth) {
-    CHECK(colors.size() <= kMostColors, fmt::format("{} colour attachments, of at most {}", colors.size(), kMostColors));
+    CHECK(colors.size() <= kMostColors,
+          fmt::format("{} colour attachments, of at most {}", colors.size(), kMostColors));
     CHECK(!colors.empty() || depth != nullptr, "a framebuffer needs an attachment");
     Key key{};
     const auto part = [](const Attachment& attachment) {
@@ -69,7 +71,8 @@ GLuint FramebufferCache::get(std::span<const Attachment> colors, const Attachmen
     entry.object.label(describe(colors, depth));
     const GLenum status = glCheckNamedFramebufferStatus(id, GL_DRAW_FRAMEBUFFER);
     if (status != GL_FRAMEBUFFER_COMPLETE) entries_.erase(key);
-    CHECK(status == GL_FRAMEBUFFER_COMPLETE, fmt::format("framebuffer ({}): {}", describe(colors, depth), statusName(status)));
+    CHECK(status == GL_FRAMEBUFFER_COMPLETE,
+          fmt::format("framebuffer ({}): {}", describe(colors, depth), statusName(status)));
     return id;
 }
 

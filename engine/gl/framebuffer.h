@@ -14,19 +14,20 @@ namespace tyndall::gl {
 struct Attachment {
     const Texture* texture = nullptr;
     int mip = 0;
-    int layer = -1; // of an array, slice of a 3D texture, face of a cube map; -1: all of them (layered), or a 2D texture
+    int layer =
+        -1; // of an array, slice of a 3D texture, face of a cube map; -1: all of them (layered), or a 2D texture
 };
 
-/// Owns framebuffers, found by what is attached. A framebuffer that was not asked for in a while is dropped, and with it its hold on
-/// textures that are gone. Empty when moved from.
+/// Owns framebuffers, found by what is attached. A framebuffer that was not asked for in a while is dropped, and with
+/// it its hold on textures that are gone. Empty when moved from.
 class FramebufferCache {
 public:
     FramebufferCache() = default;
     FramebufferCache(FramebufferCache&&) = default;
     FramebufferCache& operator=(FramebufferCache&&) = default;
 
-    /// The GL name of a framebuffer with these colour attachments, in order, drawn to all of them, and `depth` if not null.
-    /// CHECKs: at least one attachment, at most eight colours, and that the driver calls it complete.
+    /// The GL name of a framebuffer with these colour attachments, in order, drawn to all of them, and `depth` if not
+    /// null. CHECKs: at least one attachment, at most eight colours, and that the driver calls it complete.
     GLuint get(std::span<const Attachment> colors, const Attachment* depth = nullptr);
     /// Drops framebuffers with this texture; needed before a texture goes only for its memory to be freed at once.
     void forget(const Texture& texture);

@@ -25,7 +25,8 @@ struct FrameTimes {
 class GpuTimer {
 public:
     GpuTimer() = default;
-    /// At most `framesInFlight` frames wait for their times; while so many do, further frames go untimed and are counted.
+    /// At most `framesInFlight` frames wait for their times; while so many do, further frames go untimed and are
+    /// counted.
     explicit GpuTimer(int framesInFlight);
     GpuTimer(GpuTimer&& other) noexcept;
     GpuTimer& operator=(GpuTimer&& other) noexcept;

@@ -65,7 +65,8 @@ std::string LiveObjects::describe() const {
         const std::string_view name = objectKindName(ObjectKind(i));
         const bool queries = ObjectKind(i) == ObjectKind::Query;
         text += counts[i] == 1 ? fmt::format("1 {}", name)
-                               : queries ? fmt::format("{} queries", counts[i]) : fmt::format("{} {}s", counts[i], name);
+                : queries      ? fmt::format("{} queries", counts[i])
+                               : fmt::format("{} {}s", counts[i], name);
     }
     return text.empty() ? "none" : text;
 }
@@ -101,8 +102,9 @@ void Object::reset() {
         --state->live.counts[size_t(kind_)];
         state->live.bytes -= bytes_;
     } else if (contextExists(context_)) {
-        log::error(fmt::format("a {} was released while its GL context was not current; it stays until the context goes",
-                               objectKindName(kind_)));
+        log::error(
+            fmt::format("a {} was released while its GL context was not current; it stays until the context goes",
+                        objectKindName(kind_)));
     }
     id_ = 0;
     context_ = 0;
@@ -126,7 +128,8 @@ Fence Fence::insert() {
     return fence;
 }
 
-Fence::Fence(Fence&& other) noexcept : sync_(std::exchange(other.sync_, nullptr)), context_(std::exchange(other.context_, 0)) {}
+Fence::Fence(Fence&& other) noexcept
+    : sync_(std::exchange(other.sync_, nullptr)), context_(std::exchange(other.context_, 0)) {}
 
 Fence& Fence::operator=(Fence&& other) noexcept {
     if (this == &other) return *this;

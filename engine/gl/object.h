@@ -37,8 +37,9 @@ struct LiveObjects {
     [[nodiscard]] std::string describe() const;
 };
 
-/// One GL name, made in the current context and deleted with the owner; empty when moved from. Deleting needs the same context
-/// to be current: a name whose context is gone went with it, and one whose context is merely not current is left alone and logged.
+/// One GL name, made in the current context and deleted with the owner; empty when moved from. Deleting needs the same
+/// context to be current: a name whose context is gone went with it, and one whose context is merely not current is
+/// left alone and logged.
 class Object {
 public:
     Object() = default;

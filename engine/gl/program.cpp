@@ -17,11 +17,16 @@ uint64_t hashOf(std::string_view text) {
     return hash;
 }
 
-bool isWordCharacter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_'; }
+bool isWordCharacter(char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_';
+}
 
 void collectIdentifiers(std::string_view text, std::vector<uint64_t>& hashes) {
     for (size_t i = 0; i < text.size();) {
-        if (!isWordCharacter(text[i])) { ++i; continue; }
+        if (!isWordCharacter(text[i])) {
+            ++i;
+            continue;
+        }
         size_t end = i;
         while (end < text.size() && isWordCharacter(text[end])) ++end;
         hashes.push_back(hashOf(text.substr(i, end - i)));
@@ -29,8 +34,7 @@ void collectIdentifiers(std::string_view text, std::vector<uint64_t>& hashes) {
     }
 }
 
-template <typename GetLength, typename GetText>
-std::string driverLog(GLuint id, GetLength getLength, GetText getText) {
+template <typename GetLength, typename GetText> std::string driverLog(GLuint id, GetLength getLength, GetText getText) {
     GLint length = 0;
     getLength(id, GL_INFO_LOG_LENGTH, &length);
     std::string text(size_t(std::max(length, 1)), '\0');
@@ -49,11 +53,12 @@ const char* resourceKindName(ResourceKind kind) {
 
 Result<GLenum> stageOfFile(std::string_view path) {
     static constexpr std::pair<std::string_view, GLenum> kEndings[] = {
-        {".comp", GL_COMPUTE_SHADER},  {".vert", GL_VERTEX_SHADER},        {".frag", GL_FRAGMENT_SHADER},
+        {".comp", GL_COMPUTE_SHADER},  {".vert", GL_VERTEX_SHADER},       {".frag", GL_FRAGMENT_SHADER},
         {".geom", GL_GEOMETRY_SHADER}, {".tesc", GL_TESS_CONTROL_SHADER}, {".tese", GL_TESS_EVALUATION_SHADER}};
     for (const auto& [ending, stage] : kEndings)
         if (path.ends_with(ending)) return stage;
-    return Error{fmt::format("shader '{}' has no stage: its name must end in .comp, .vert, .frag, .geom, .tesc or .tese", path)};
+    return Error{
+        fmt::format("shader '{}' has no stage: its name must end in .comp, .vert, .frag, .geom, .tesc or .tese", path)};
 }
 
 PendingProgram::PendingProgram(std::string_view name, std::span<const StageSource> stages) : name_(name) {
@@ -66,7 +71,8 @@ PendingProgram::PendingProgram(std::string_view name, std::span<const StageSourc
         glCompileShader(shader);
         stages_.push_back({shader, stage.shader});
     }
-    // Linking is asked for at once, without looking at the compilation first, so that the driver can do both on its threads.
+    // Linking is asked for at once, without looking at the compilation first, so that the driver can do both on its
+    // threads.
     object_ = Object(ObjectKind::Program, glCreateProgram());
     for (const Stage& stage : stages_) glAttachShader(object_.id(), stage.shader);
     glLinkProgram(object_.id());
@@ -119,7 +125,8 @@ Result<Program> PendingProgram::finish() {
     glGetProgramiv(self.object_.id(), GL_LINK_STATUS, &linked);
     if (!linked) {
         const std::string log = driverLog(self.object_.id(), glGetProgramiv, glGetProgramInfoLog);
-        return Error{fmt::format("shader '{}' does not link:\n{}", self.name_, mapShaderMessages(log, self.stages_.front().source))};
+        return Error{fmt::format("shader '{}' does not link:\n{}", self.name_,
+                                 mapShaderMessages(log, self.stages_.front().source))};
     }
     Program program;
     program.name_ = self.name_;
@@ -129,7 +136,8 @@ Result<Program> PendingProgram::finish() {
         GLint type = 0;
         glGetShaderiv(stage.shader, GL_SHADER_TYPE, &type);
         collectIdentifiers(stage.source.text, program.identifiers_);
-        const std::string remarks = mapShaderMessages(driverLog(stage.shader, glGetShaderiv, glGetShaderInfoLog), stage.source);
+        const std::string remarks =
+            mapShaderMessages(driverLog(stage.shader, glGetShaderiv, glGetShaderInfoLog), stage.source);
         if (!remarks.empty()) program.warnings_ += (program.warnings_.empty() ? "" : "\n") + remarks;
         if (GLenum(type) != GL_COMPUTE_SHADER) continue;
         GLint size[3] = {};
@@ -144,7 +152,9 @@ Result<Program> PendingProgram::finish() {
     return program;
 }
 
-Result<Program> Program::build(std::string_view name, std::span<const StageSource> stages) { return PendingProgram(name, stages).finish(); }
+Result<Program> Program::build(std::string_view name, std::span<const StageSource> stages) {
+    return PendingProgram(name, stages).finish();
+}
 
 const ProgramResource* Program::find(std::string_view name) const {
     for (const ProgramResource& resource : resources_)
@@ -152,7 +162,9 @@ const ProgramResource* Program::find(std::string_view name) const {
     return nullptr;
 }
 
-bool Program::mentions(std::string_view identifier) const { return std::ranges::binary_search(identifiers_, hashOf(identifier)); }
+bool Program::mentions(std::string_view identifier) const {
+    return std::ranges::binary_search(identifiers_, hashOf(identifier));
+}
 
 void Program::set(std::string_view uniform, int32_t value) const {
     if (const ProgramResource* found = find(uniform)) glProgramUniform1i(id(), found->location, value);

@@ -28,22 +28,23 @@ const char* resourceKindName(ResourceKind kind);
 struct BlockMember {
     std::string name; // as GL names it: "view.size", "lights[0].position"
     GLenum type = 0;
-    int offset = 0;       // bytes
-    int arraySize = 1;    // 0: unbounded
-    int arrayStride = 0;  // bytes
-    int matrixStride = 0; // bytes
+    int offset = 0;         // bytes
+    int arraySize = 1;      // 0: unbounded
+    int arrayStride = 0;    // bytes
+    int matrixStride = 0;   // bytes
     int topLevelStride = 0; // bytes between elements of the block's outer array; storage blocks only
 };
 
 /// Something that a program reads or writes.
 struct ProgramResource {
     ResourceKind kind = ResourceKind::Uniform;
-    std::string name;    // without "[0]"
-    int binding = -1;    // binding point (blocks), first texture unit, first image unit; assigned by link order, from 0 per kind
-    int location = -1;   // samplers, images, uniforms
-    GLenum type = 0;     // GL_SAMPLER_2D, GL_FLOAT … ; 0 for blocks
-    int count = 1;       // elements of an array
-    int64_t bytes = 0;   // of a block without its unbounded array
+    std::string name; // without "[0]"
+    int binding =
+        -1; // binding point (blocks), first texture unit, first image unit; assigned by link order, from 0 per kind
+    int location = -1;                // samplers, images, uniforms
+    GLenum type = 0;                  // GL_SAMPLER_2D, GL_FLOAT … ; 0 for blocks
+    int count = 1;                    // elements of an array
+    int64_t bytes = 0;                // of a block without its unbounded array
     std::vector<BlockMember> members; // of a block
 };
 
@@ -77,7 +78,8 @@ public:
     [[nodiscard]] std::span<const ProgramResource> resources() const { return resources_; }
     /// Null where the program has no such active resource.
     [[nodiscard]] const ProgramResource* find(std::string_view name) const;
-    /// True when the source has this identifier anywhere: what is bound to a name that was optimised away is no mistake.
+    /// True when the source has this identifier anywhere: what is bound to a name that was optimised away is no
+    /// mistake.
     [[nodiscard]] bool mentions(std::string_view identifier) const;
 
     /// Sets a plain uniform; does nothing where it is not active.
@@ -95,7 +97,8 @@ private:
     std::vector<uint64_t> identifiers_; // hashes, sorted
 };
 
-/// A program that the driver is compiling, perhaps on threads of its own (GL_KHR_parallel_shader_compile). Empty when moved from.
+/// A program that the driver is compiling, perhaps on threads of its own (GL_KHR_parallel_shader_compile). Empty when
+/// moved from.
 class PendingProgram {
 public:
     PendingProgram() = default;

@@ -39,18 +39,35 @@ std::string withoutFirstIndex(std::string name) {
 
 bool isSamplerType(GLenum type) {
     switch (type) {
-    case GL_SAMPLER_1D: case GL_SAMPLER_2D: case GL_SAMPLER_3D: case GL_SAMPLER_CUBE: case GL_SAMPLER_2D_ARRAY:
-    case GL_SAMPLER_2D_SHADOW: case GL_SAMPLER_2D_ARRAY_SHADOW: case GL_SAMPLER_CUBE_SHADOW: case GL_SAMPLER_BUFFER:
-    case GL_SAMPLER_2D_MULTISAMPLE: case GL_SAMPLER_CUBE_MAP_ARRAY: case GL_SAMPLER_CUBE_MAP_ARRAY_SHADOW:
-    case GL_INT_SAMPLER_2D: case GL_INT_SAMPLER_3D: case GL_INT_SAMPLER_2D_ARRAY: case GL_INT_SAMPLER_CUBE: case GL_INT_SAMPLER_BUFFER:
-    case GL_UNSIGNED_INT_SAMPLER_2D: case GL_UNSIGNED_INT_SAMPLER_3D: case GL_UNSIGNED_INT_SAMPLER_2D_ARRAY:
-    case GL_UNSIGNED_INT_SAMPLER_CUBE: case GL_UNSIGNED_INT_SAMPLER_BUFFER: case GL_SAMPLER_2D_RECT:
-        return true;
+    case GL_SAMPLER_1D:
+    case GL_SAMPLER_2D:
+    case GL_SAMPLER_3D:
+    case GL_SAMPLER_CUBE:
+    case GL_SAMPLER_2D_ARRAY:
+    case GL_SAMPLER_2D_SHADOW:
+    case GL_SAMPLER_2D_ARRAY_SHADOW:
+    case GL_SAMPLER_CUBE_SHADOW:
+    case GL_SAMPLER_BUFFER:
+    case GL_SAMPLER_2D_MULTISAMPLE:
+    case GL_SAMPLER_CUBE_MAP_ARRAY:
+    case GL_SAMPLER_CUBE_MAP_ARRAY_SHADOW:
+    case GL_INT_SAMPLER_2D:
+    case GL_INT_SAMPLER_3D:
+    case GL_INT_SAMPLER_2D_ARRAY:
+    case GL_INT_SAMPLER_CUBE:
+    case GL_INT_SAMPLER_BUFFER:
+    case GL_UNSIGNED_INT_SAMPLER_2D:
+    case GL_UNSIGNED_INT_SAMPLER_3D:
+    case GL_UNSIGNED_INT_SAMPLER_2D_ARRAY:
+    case GL_UNSIGNED_INT_SAMPLER_CUBE:
+    case GL_UNSIGNED_INT_SAMPLER_BUFFER:
+    case GL_SAMPLER_2D_RECT: return true;
     default: return false;
     }
 }
 
-/// Image types are one run of numbers in the specification, from GL_IMAGE_1D to GL_UNSIGNED_INT_IMAGE_2D_MULTISAMPLE_ARRAY.
+/// Image types are one run of numbers in the specification, from GL_IMAGE_1D to
+/// GL_UNSIGNED_INT_IMAGE_2D_MULTISAMPLE_ARRAY.
 bool isImageType(GLenum type) { return type >= GL_IMAGE_1D && type <= GL_UNSIGNED_INT_IMAGE_2D_MULTISAMPLE_ARRAY; }
 
 std::vector<BlockMember> blockMembers(GLuint program, GLenum block, GLuint index) {
@@ -85,8 +102,10 @@ void reflectBlocks(GLuint program, GLenum interface, ResourceKind kind, std::vec
         resource.binding = int(i);
         resource.bytes = property(program, interface, i, GL_BUFFER_DATA_SIZE);
         resource.members = blockMembers(program, interface, i);
-        if (kind == ResourceKind::UniformBlock) glUniformBlockBinding(program, i, i);
-        else glShaderStorageBlockBinding(program, i, i);
+        if (kind == ResourceKind::UniformBlock)
+            glUniformBlockBinding(program, i, i);
+        else
+            glShaderStorageBlockBinding(program, i, i);
         resources.push_back(std::move(resource));
     }
 }
@@ -141,7 +160,8 @@ Result<void> checkBindingLimits(std::string_view name, std::span<const ProgramRe
         for (const ProgramResource& resource : resources)
             if (resource.kind == kind) used += resource.count;
         if (used > limit)
-            return Error{fmt::format("shader '{}' uses {} {} bindings, and this GPU has {}", name, used, resourceKindName(kind), limit)};
+            return Error{fmt::format("shader '{}' uses {} {} bindings, and this GPU has {}", name, used,
+                                     resourceKindName(kind), limit)};
     }
     return {};
 }

@@ -9,7 +9,8 @@
 
 namespace tyndall::gl {
 
-/// All active resources of the linked `program`. Blocks, texture units and image units are numbered from 0 and set in the program.
+/// All active resources of the linked `program`. Blocks, texture units and image units are numbered from 0 and set in
+/// the program.
 std::vector<ProgramResource> reflectAndBind(GLuint program);
 /// Errors: more bindings of a kind than this GPU has.
 Result<void> checkBindingLimits(std::string_view name, std::span<const ProgramResource> resources);

@@ -14,8 +14,8 @@ ReadBack ReadBack::start(const Texture& texture, int mip) {
     result.region_ = texture.mipRegion(mip);
     result.channels_ = int(info.channels);
     result.integer_ = info.formatClass == FormatClass::UnsignedInt || info.formatClass == FormatClass::SignedInt;
-    const uint64_t bytes = uint64_t(result.region_.width) * uint64_t(result.region_.height) * uint64_t(result.region_.depth) *
-                           info.channels * sizeof(float);
+    const uint64_t bytes = uint64_t(result.region_.width) * uint64_t(result.region_.height) *
+                           uint64_t(result.region_.depth) * info.channels * sizeof(float);
     CHECK(bytes < (uint64_t(1) << 31), fmt::format("a read-back of {} bytes is more than OpenGL packs at once", bytes));
 
     GLuint id = 0;
@@ -25,9 +25,12 @@ ReadBack ReadBack::start(const Texture& texture, int mip) {
     result.memory_ = Object(ObjectKind::Buffer, id, int64_t(bytes));
     result.memory_.label("read-back");
 
-    glMemoryBarrier(GL_TEXTURE_UPDATE_BARRIER_BIT | GL_PIXEL_BUFFER_BARRIER_BIT | GL_FRAMEBUFFER_BARRIER_BIT); // shaders may have written it
+    glMemoryBarrier(GL_TEXTURE_UPDATE_BARRIER_BIT | GL_PIXEL_BUFFER_BARRIER_BIT |
+                    GL_FRAMEBUFFER_BARRIER_BIT); // shaders may have written it
     glBindBuffer(GL_PIXEL_PACK_BUFFER, id);
-    const GLenum type = info.formatClass == FormatClass::SignedInt ? GL_INT : result.integer_ ? GL_UNSIGNED_INT : GL_FLOAT;
+    const GLenum type = info.formatClass == FormatClass::SignedInt ? GL_INT
+                        : result.integer_                          ? GL_UNSIGNED_INT
+                                                                   : GL_FLOAT;
     glGetTextureImage(texture.id(), mip, info.transferFormat, type, GLsizei(bytes), nullptr);
     glBindBuffer(GL_PIXEL_PACK_BUFFER, 0);
     result.mapped_ = glMapNamedBufferRange(id, 0, GLsizeiptr(bytes), kFlags);
@@ -59,7 +62,9 @@ std::vector<uint32_t> ReadBack::takeIntegers() {
 }
 
 std::vector<float> readFloats(const Texture& texture, int mip) { return ReadBack::start(texture, mip).takeFloats(); }
-std::vector<uint32_t> readIntegers(const Texture& texture, int mip) { return ReadBack::start(texture, mip).takeIntegers(); }
+std::vector<uint32_t> readIntegers(const Texture& texture, int mip) {
+    return ReadBack::start(texture, mip).takeIntegers();
+}
 
 Image takeImage(ReadBack& readBack, int layer) {
     const TextureRegion region = readBack.region();

@@ -9,13 +9,13 @@
 
 namespace tyndall::gl {
 
-/// A copy of one mip on its way to the CPU. Rows run from the bottom, as GL has them; layers or slices follow one another.
-/// Empty when moved from.
+/// A copy of one mip on its way to the CPU. Rows run from the bottom, as GL has them; layers or slices follow one
+/// another. Empty when moved from.
 class ReadBack {
 public:
     ReadBack() = default;
-    /// Records the copy of a whole mip as 32-bit floats (normalised formats become 0..1, depth stays depth) or, for integer formats,
-    /// as 32-bit integers. Commands before are taken into account, those after are not.
+    /// Records the copy of a whole mip as 32-bit floats (normalised formats become 0..1, depth stays depth) or, for
+    /// integer formats, as 32-bit integers. Commands before are taken into account, those after are not.
     static ReadBack start(const Texture& texture, int mip = 0);
 
     /// True when the data has come; never waits.

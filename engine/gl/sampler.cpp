@@ -40,7 +40,8 @@ GLuint SamplerCache::get(const SamplerSpec& spec) {
     }
     const Capabilities& capabilities = currentCapabilities();
     if (spec.anisotropy > 1.0f && capabilities.has("GL_EXT_texture_filter_anisotropic"))
-        glSamplerParameterf(id, GL_TEXTURE_MAX_ANISOTROPY_EXT, std::min(spec.anisotropy, capabilities.limits.anisotropy));
+        glSamplerParameterf(id, GL_TEXTURE_MAX_ANISOTROPY_EXT,
+                            std::min(spec.anisotropy, capabilities.limits.anisotropy));
     return id;
 }
 

@@ -36,6 +36,11 @@ bool isInside(const std::string& path) {
     return true;
 }
 
+bool isFolder(const fs::path& path) {
+    std::error_code error;
+    return fs::is_directory(path, error);
+}
+
 fs::path folderFromEnvironment() {
     const char* folder = std::getenv("TYNDALL_SHADER_DIR");
     return folder != nullptr ? fs::path(folder) : fs::path();
@@ -46,6 +51,10 @@ class Sources {
 public:
     Sources(std::span<const EmbeddedShader> embedded, fs::path folder) : folder_(std::move(folder)) {
         for (const EmbeddedShader& shader : embedded) embedded_[shader.path] = shader.text;
+        if (!folder_.empty() && !isFolder(folder_))
+            log::warningOnce(
+                "shader folder " + folder_.string(),
+                fmt::format("the shader folder '{}' does not exist: the built-in shaders are used", folder_.string()));
     }
 
     [[nodiscard]] std::optional<std::string> read(const std::string& path) const {
@@ -137,8 +146,10 @@ struct ShaderLibrary::State {
     void start(Entry& entry) {
         entry.failure.clear();
         const Result<std::vector<StageSource>> stages = expand(entry);
-        if (stages) entry.pending = PendingProgram(entry.request.describe(), *stages);
-        else entry.failure = stages.message();
+        if (stages)
+            entry.pending = PendingProgram(entry.request.describe(), *stages);
+        else
+            entry.failure = stages.message();
     }
 
     /// True when the entry got a new program.
@@ -188,7 +199,8 @@ struct ShaderLibrary::State {
 };
 
 ShaderLibrary::ShaderLibrary(ShaderLibraryOptions options)
-    : state_(std::make_unique<State>(options.embedded, options.folder.empty() ? folderFromEnvironment() : std::move(options.folder),
+    : state_(std::make_unique<State>(options.embedded,
+                                     options.folder.empty() ? folderFromEnvironment() : std::move(options.folder),
                                      options.pollInterval)) {}
 ShaderLibrary::~ShaderLibrary() = default;
 ShaderLibrary::ShaderLibrary(ShaderLibrary&&) noexcept = default;
@@ -207,7 +219,8 @@ Result<const Program*> ShaderLibrary::compute(const std::string& path, std::vect
     return program({{path}, std::move(defines)});
 }
 
-Result<const Program*> ShaderLibrary::raster(const std::string& vertex, const std::string& fragment, std::vector<ShaderDefine> defines) {
+Result<const Program*> ShaderLibrary::raster(const std::string& vertex, const std::string& fragment,
+                                             std::vector<ShaderDefine> defines) {
     return program({{vertex, fragment}, std::move(defines)});
 }
 

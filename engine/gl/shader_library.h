@@ -1,5 +1,6 @@
 #pragma once
-// All programs of a renderer, made from the embedded shaders, from those that plugins add, or from a folder that is watched.
+// All programs of a renderer, made from the embedded shaders, from those that plugins add, or from a folder that is
+// watched.
 
 #include <chrono>
 #include <filesystem>
@@ -20,7 +21,8 @@ namespace tyndall::gl {
 
 struct ShaderLibraryOptions {
     std::span<const EmbeddedShader> embedded = engineShaders();
-    /// Files here come before embedded ones of the same path, and are watched. Empty: the environment variable TYNDALL_SHADER_DIR, if set.
+    /// Files here come before embedded ones of the same path, and are watched. Empty: the environment variable
+    /// TYNDALL_SHADER_DIR, if set.
     std::filesystem::path folder{};
     /// Least time between two looks at the files' times.
     std::chrono::milliseconds pollInterval{250};
@@ -34,15 +36,16 @@ public:
     ShaderLibrary(ShaderLibrary&&) noexcept;
     ShaderLibrary& operator=(ShaderLibrary&&) noexcept;
 
-    /// Adds or replaces the source `path` (as "gi/octaves/march.comp"); `text` is copied. Programs that use it are made anew at the
-    /// next pollChanges().
+    /// Adds or replaces the source `path` (as "gi/octaves/march.comp"); `text` is copied. Programs that use it are made
+    /// anew at the next pollChanges().
     void addSource(const std::string& path, std::string text);
 
-    /// The program, made on first use. Errors: the messages of the driver with files and lines; the same at every call until a
-    /// file changes.
+    /// The program, made on first use. Errors: the messages of the driver with files and lines; the same at every call
+    /// until a file changes.
     Result<const Program*> program(const ProgramRequest& request);
     Result<const Program*> compute(const std::string& path, std::vector<ShaderDefine> defines = {});
-    Result<const Program*> raster(const std::string& vertex, const std::string& fragment, std::vector<ShaderDefine> defines = {});
+    Result<const Program*> raster(const std::string& vertex, const std::string& fragment,
+                                  std::vector<ShaderDefine> defines = {});
     /// Starts to make programs, on the driver's threads where it has some, so that program() waits less.
     void prefetch(std::span<const ProgramRequest> requests);
 
@@ -51,8 +54,8 @@ public:
     /// variants.txt of the folder, else of the embedded sources. CHECKs that it can be read.
     [[nodiscard]] const VariantList& variants() const;
 
-    /// Looks for changed files and makes the programs that use them anew. One that fails keeps its last good program, and the message
-    /// is logged once. Returns the number of programs that were replaced. Cheap enough for every frame.
+    /// Looks for changed files and makes the programs that use them anew. One that fails keeps its last good program,
+    /// and the message is logged once. Returns the number of programs that were replaced. Cheap enough for every frame.
     int pollChanges();
     /// Grows whenever a program is replaced: who caches what a program drew compares.
     [[nodiscard]] uint64_t generation() const;

@@ -35,7 +35,10 @@ bool endsInComment(std::string_view line, bool inside) {
     for (size_t i = 0; i < line.size(); ++i) {
         const std::string_view two = line.substr(i, 2);
         if (inside) {
-            if (two == "*/") { inside = false; ++i; }
+            if (two == "*/") {
+                inside = false;
+                ++i;
+            }
         } else if (two == "//") {
             return false;
         } else if (two == "/*") {
@@ -76,7 +79,9 @@ public:
         }
         const size_t number = numberOf(path);
         const std::optional<std::string> text = read_(path);
-        if (!text) return Error{from.empty() ? fmt::format("shader '{}' does not exist", path) : fmt::format("{}: no shader file '{}'", from, path)};
+        if (!text)
+            return Error{from.empty() ? fmt::format("shader '{}' does not exist", path)
+                                      : fmt::format("{}: no shader file '{}'", from, path)};
         stack_.push_back(path);
         addLineDirective(number, 1);
         const std::vector<std::string_view> lines = splitLines(*text);
@@ -103,9 +108,12 @@ private:
     }
 
     /// The next line is line `line` of file `number`.
-    void addLineDirective(size_t number, size_t line) { out_ += fmt::format("#line {}\n", number * kLinesPerFile + line); }
+    void addLineDirective(size_t number, size_t line) {
+        out_ += fmt::format("#line {}\n", number * kLinesPerFile + line);
+    }
 
-    static void follow(const Directive& directive, std::span<const std::string_view> following, std::vector<Branch>& branches) {
+    static void follow(const Directive& directive, std::span<const std::string_view> following,
+                       std::vector<Branch>& branches) {
         const std::string_view word = firstWord(directive.rest);
         if (directive.name == "ifdef") {
             branches.push_back(word == "__cplusplus" ? Branch::Cpp : Branch::Unknown);
@@ -124,8 +132,8 @@ private:
         }
     }
 
-    Result<void> addLine(std::span<const std::string_view> lines, size_t i, const Directive& directive, std::vector<Branch>& branches,
-                         size_t number, const std::string& path) {
+    Result<void> addLine(std::span<const std::string_view> lines, size_t i, const Directive& directive,
+                         std::vector<Branch>& branches, size_t number, const std::string& path) {
         const bool wasCpp = std::ranges::find(branches, Branch::Cpp) != branches.end();
         follow(directive, lines.subspan(i + 1), branches);
         const bool isCpp = std::ranges::find(branches, Branch::Cpp) != branches.end();
@@ -142,14 +150,18 @@ private:
         const std::string place = fmt::format("{}:{}", path, i + 1);
         const size_t close = directive.rest.size() < 2 ? std::string_view::npos : directive.rest.find('"', 1);
         if (directive.rest.empty() || directive.rest.front() != '"' || close == std::string_view::npos)
-            return Error{fmt::format("{}: '{}' is no include: write #include \"folder/file.glsl\", relative to shaders/", place, trimmed(lines[i]))};
+            return Error{
+                fmt::format("{}: '{}' is no include: write #include \"folder/file.glsl\", relative to shaders/", place,
+                            trimmed(lines[i]))};
         const bool certain = std::ranges::find(branches, Branch::Unknown) == branches.end() && uncertainIncludes_ == 0;
-        if (Result<void> added = include(std::string(directive.rest.substr(1, close - 1)), place, certain); !added) return added;
+        if (Result<void> added = include(std::string(directive.rest.substr(1, close - 1)), place, certain); !added)
+            return added;
         addLineDirective(number, i + 2);
         return {};
     }
 
-    /// Once is enough, but only the driver knows whether an earlier copy in some #if was taken: it gets a guard to decide by.
+    /// Once is enough, but only the driver knows whether an earlier copy in some #if was taken: it gets a guard to
+    /// decide by.
     Result<void> include(const std::string& path, const std::string& from, bool certain) {
         const bool onStack = std::ranges::find(stack_, path) != stack_.end();
         if (!onStack && std::ranges::find(taken_, path) != taken_.end()) return {};
@@ -171,16 +183,19 @@ private:
 
 } // namespace
 
-Result<ExpandedShader> expandShader(const std::string& path, std::span<const ShaderDefine> defines, const ReadShader& read) {
+Result<ExpandedShader> expandShader(const std::string& path, std::span<const ShaderDefine> defines,
+                                    const ReadShader& read) {
     Expander expander(read);
     expander.out_ = "#version 450 core\n";
-    for (const ShaderDefine& define : defines) expander.out_ += fmt::format("#define {} {}\n", define.name, define.value);
+    for (const ShaderDefine& define : defines)
+        expander.out_ += fmt::format("#define {} {}\n", define.name, define.value);
     if (Result<void> added = expander.addFile(path, {}); !added) return added.error();
     return ExpandedShader{std::move(expander.out_), std::move(expander.files_)};
 }
 
 std::string mapShaderMessages(std::string_view driverLog, const ExpandedShader& shader) {
-    // Mesa: "0:12(5): error: …"; NVIDIA: "0(12) : error C1008: …"; others: "ERROR: 0:12: …". The first number is the source's.
+    // Mesa: "0:12(5): error: …"; NVIDIA: "0(12) : error C1008: …"; others: "ERROR: 0:12: …". The first number is the
+    // source's.
     static const std::regex kMesa(R"(^\d+:(\d+)\((\d+)\):\s*(.*)$)");
     static const std::regex kNvidia(R"(^\d+\((\d+)\)\s*:\s*(.*)$)");
     static const std::regex kOthers(R"(^(ERROR|WARNING):\s*\d+:(\d+):\s*(.*)$)");
@@ -188,7 +203,8 @@ std::string mapShaderMessages(std::string_view driverLog, const ExpandedShader& 
         size_t line = 0;
         std::from_chars(number.data(), number.data() + number.size(), line);
         const size_t file = line / kLinesPerFile;
-        return file < shader.files.size() ? fmt::format("{}:{}", shader.files[file], line % kLinesPerFile) : "line " + number;
+        return file < shader.files.size() ? fmt::format("{}:{}", shader.files[file], line % kLinesPerFile)
+                                          : "line " + number;
     };
     std::string mapped;
     for (std::string_view view : splitLines(driverLog)) {
@@ -196,10 +212,14 @@ std::string mapShaderMessages(std::string_view driverLog, const ExpandedShader& 
         if (line.empty() || line.front() == '\0') continue;
         if (!mapped.empty()) mapped += '\n';
         std::smatch match;
-        if (std::regex_match(line, match, kMesa)) mapped += fmt::format("{}:{}: {}", place(match[1]), match[2].str(), match[3].str());
-        else if (std::regex_match(line, match, kNvidia)) mapped += fmt::format("{}: {}", place(match[1]), match[2].str());
-        else if (std::regex_match(line, match, kOthers)) mapped += fmt::format("{}: {}: {}", place(match[2]), match[1].str(), match[3].str());
-        else mapped += line;
+        if (std::regex_match(line, match, kMesa))
+            mapped += fmt::format("{}:{}: {}", place(match[1]), match[2].str(), match[3].str());
+        else if (std::regex_match(line, match, kNvidia))
+            mapped += fmt::format("{}: {}", place(match[1]), match[2].str());
+        else if (std::regex_match(line, match, kOthers))
+            mapped += fmt::format("{}: {}: {}", place(match[2]), match[1].str(), match[3].str());
+        else
+            mapped += line;
     }
     return mapped;
 }

@@ -47,7 +47,8 @@ Result<VariantLine> parseLine(std::string_view text, int number) {
         if (word.empty()) continue;
         if (word.find('=') == std::string_view::npos) {
             if (Result<GLenum> stage = stageOfFile(word); !stage) return stage.error();
-            if (!line.defines.empty()) return Error{fmt::format("'{}' stands after the defines: shaders come first", word)};
+            if (!line.defines.empty())
+                return Error{fmt::format("'{}' stands after the defines: shaders come first", word)};
             line.files.emplace_back(word);
             continue;
         }
@@ -101,7 +102,8 @@ void VariantList::forEachVariant(const std::function<void(const ProgramRequest&)
         std::vector<size_t> choice(line.defines.size(), 0); // counts up like an odometer
         while (true) {
             ProgramRequest request{line.files, {}};
-            for (size_t i = 0; i < choice.size(); ++i) request.defines.push_back({line.defines[i].name, line.defines[i].values[choice[i]]});
+            for (size_t i = 0; i < choice.size(); ++i)
+                request.defines.push_back({line.defines[i].name, line.defines[i].values[choice[i]]});
             visit(request);
             size_t digit = 0;
             while (digit < choice.size() && ++choice[digit] == line.defines[digit].values.size()) choice[digit++] = 0;

@@ -42,8 +42,8 @@ struct VariantLine {
 class VariantList {
 public:
     VariantList() = default;
-    /// Errors, with `name`, line and what would be right: a line without a shader, a shader whose ending is unknown, a define
-    /// without values or with something that is no whole number, the same define twice.
+    /// Errors, with `name`, line and what would be right: a line without a shader, a shader whose ending is unknown, a
+    /// define without values or with something that is no whole number, the same define twice.
     static Result<VariantList> parse(std::string_view text, std::string_view name);
 
     [[nodiscard]] std::span<const VariantLine> lines() const { return lines_; }

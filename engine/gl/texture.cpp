@@ -20,10 +20,12 @@ bool isArrayLike(GLenum target) { return target == GL_TEXTURE_2D_ARRAY || target
 /// Errors: sizes that this driver does not take.
 Result<void> checkLimits(std::string_view name, const TextureSpec& spec, const Limits& limits) {
     const int edge = spec.target == GL_TEXTURE_3D ? limits.texture3DSize : limits.textureSize;
-    const int layers = spec.target == GL_TEXTURE_2D_ARRAY ? limits.textureLayers : spec.target == GL_TEXTURE_3D ? limits.texture3DSize : 6;
+    const int layers = spec.target == GL_TEXTURE_2D_ARRAY ? limits.textureLayers
+                       : spec.target == GL_TEXTURE_3D     ? limits.texture3DSize
+                                                          : 6;
     if (spec.width <= edge && spec.height <= edge && spec.depth <= layers) return {};
-    return Error{fmt::format("texture '{}' of {}x{}x{} is larger than this GPU takes ({}x{}x{})", name, spec.width, spec.height,
-                             spec.depth, edge, edge, layers)};
+    return Error{fmt::format("texture '{}' of {}x{}x{} is larger than this GPU takes ({}x{}x{})", name, spec.width,
+                             spec.height, spec.depth, edge, edge, layers)};
 }
 
 void checkSpec(std::string_view name, const TextureSpec& spec) {
@@ -32,11 +34,13 @@ void checkSpec(std::string_view name, const TextureSpec& spec) {
           fmt::format("texture '{}' has target {:#x}", name, spec.target));
     CHECK(spec.width > 0 && spec.height > 0 && spec.depth > 0,
           fmt::format("texture '{}' of {}x{}x{} has no texels", name, spec.width, spec.height, spec.depth));
-    CHECK(spec.target != GL_TEXTURE_2D || spec.depth == 1, fmt::format("2D texture '{}' has depth {}", name, spec.depth));
+    CHECK(spec.target != GL_TEXTURE_2D || spec.depth == 1,
+          fmt::format("2D texture '{}' has depth {}", name, spec.depth));
     CHECK(spec.target != GL_TEXTURE_CUBE_MAP || (spec.depth == 6 && spec.width == spec.height),
           fmt::format("cube map '{}' needs six square faces", name));
     const int most = fullMipCount(spec.width, spec.height, spec.target == GL_TEXTURE_3D ? spec.depth : 1);
-    CHECK(spec.mips >= 1 && spec.mips <= most, fmt::format("texture '{}' has {} mips, of at most {}", name, spec.mips, most));
+    CHECK(spec.mips >= 1 && spec.mips <= most,
+          fmt::format("texture '{}' has {} mips, of at most {}", name, spec.mips, most));
 }
 
 void allocate(GLuint id, const TextureSpec& spec) {
@@ -50,7 +54,8 @@ void allocate(GLuint id, const TextureSpec& spec) {
 void setPlainSampling(GLuint id, const TextureSpec& spec) {
     glTextureParameteri(id, GL_TEXTURE_MIN_FILTER, spec.mips > 1 ? GL_NEAREST_MIPMAP_NEAREST : GL_NEAREST);
     glTextureParameteri(id, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
-    for (GLenum wrap : {GL_TEXTURE_WRAP_S, GL_TEXTURE_WRAP_T, GL_TEXTURE_WRAP_R}) glTextureParameteri(id, wrap, GL_CLAMP_TO_EDGE);
+    for (GLenum wrap : {GL_TEXTURE_WRAP_S, GL_TEXTURE_WRAP_T, GL_TEXTURE_WRAP_R})
+        glTextureParameteri(id, wrap, GL_CLAMP_TO_EDGE);
 }
 
 } // namespace
@@ -75,12 +80,13 @@ Result<Texture> Texture::create(std::string_view name, const TextureSpec& spec) 
     if (Result<void> limits = checkLimits(name, spec, currentCapabilities().limits); !limits) return limits.error();
     GLuint id = 0;
     glCreateTextures(spec.target, 1, &id);
-    while (glGetError() != GL_NO_ERROR) {} // so that an error read afterwards is new
+    while (glGetError() != GL_NO_ERROR) {
+    } // so that an error read afterwards is new
     allocate(id, spec);
     if (glGetError() == GL_OUT_OF_MEMORY) {
         glDeleteTextures(1, &id);
-        return Error{fmt::format("texture '{}' of {}x{}x{} {}: the GPU has no room for its {} bytes", name, spec.width, spec.height,
-                                 spec.depth, formatInfo(spec.internalFormat).name, textureBytes(spec))};
+        return Error{fmt::format("texture '{}' of {}x{}x{} {}: the GPU has no room for its {} bytes", name, spec.width,
+                                 spec.height, spec.depth, formatInfo(spec.internalFormat).name, textureBytes(spec))};
     }
     setPlainSampling(id, spec);
     Texture texture;
@@ -93,11 +99,12 @@ Result<Texture> Texture::create(std::string_view name, const TextureSpec& spec) 
 
 Texture::Texture(std::string_view name, const TextureSpec& spec) { *this = std::move(create(name, spec).value()); }
 
-Texture Texture::view(std::string_view name, GLenum target, GLenum internalFormat, int firstMip, int mips, int firstLayer,
-                      int layers) const {
+Texture Texture::view(std::string_view name, GLenum target, GLenum internalFormat, int firstMip, int mips,
+                      int firstLayer, int layers) const {
     CHECK(object_, "a view of an empty texture");
     CHECK(formatInfo(internalFormat).bytesPerTexel == formatInfo(spec_.internalFormat).bytesPerTexel,
-          fmt::format("view '{}' as {} of a texture of {}", name, formatInfo(internalFormat).name, formatInfo(spec_.internalFormat).name));
+          fmt::format("view '{}' as {} of a texture of {}", name, formatInfo(internalFormat).name,
+                      formatInfo(spec_.internalFormat).name));
     CHECK(firstMip >= 0 && mips >= 1 && firstMip + mips <= spec_.mips,
           fmt::format("view '{}' of mips {}+{} of a texture with {}", name, firstMip, mips, spec_.mips));
     const int layersOfAll = isArrayLike(spec_.target) ? spec_.depth : 1;
@@ -105,12 +112,14 @@ Texture Texture::view(std::string_view name, GLenum target, GLenum internalForma
           fmt::format("view '{}' of layers {}+{} of a texture with {}", name, firstLayer, layers, layersOfAll));
     GLuint id = 0;
     glGenTextures(1, &id); // glTextureView needs a name that was never bound, which glCreateTextures does not give
-    glTextureView(id, target, this->id(), internalFormat, GLuint(firstMip), GLuint(mips), GLuint(firstLayer), GLuint(layers));
+    glTextureView(id, target, this->id(), internalFormat, GLuint(firstMip), GLuint(mips), GLuint(firstLayer),
+                  GLuint(layers));
     Texture result;
     result.object_ = Object(ObjectKind::Texture, id);
     result.object_.label(name);
     const TextureRegion size = mipRegion(firstMip);
-    result.spec_ = {target, internalFormat, size.width, size.height, target == GL_TEXTURE_3D ? size.depth : layers, mips};
+    result.spec_ = {target, internalFormat, size.width, size.height, target == GL_TEXTURE_3D ? size.depth : layers,
+                    mips};
     result.serial_ = nextSerial();
     setPlainSampling(id, result.spec_);
     return result;
@@ -128,14 +137,17 @@ TextureRegion Texture::mipRegion(int mip) const {
 
 void Texture::write(const TextureRegion& region, const void* data, size_t bytes, GLenum format, GLenum type) {
     const TextureRegion whole = mipRegion(region.mip);
-    const auto inside = [](int first, int count, int size) { return first >= 0 && count >= 0 && first <= size && count <= size - first; };
+    const auto inside = [](int first, int count, int size) {
+        return first >= 0 && count >= 0 && first <= size && count <= size - first;
+    };
     CHECK(inside(region.x, region.width, whole.width) && inside(region.y, region.height, whole.height) &&
               inside(region.z, region.depth, whole.depth),
-          fmt::format("write of {}x{}x{} texels at {},{},{} to a mip of {}x{}x{}", region.width, region.height, region.depth, region.x,
-                      region.y, region.z, whole.width, whole.height, whole.depth));
+          fmt::format("write of {}x{}x{} texels at {},{},{} to a mip of {}x{}x{}", region.width, region.height,
+                      region.depth, region.x, region.y, region.z, whole.width, whole.height, whole.depth));
     const FormatInfo& info = formatInfo(spec_.internalFormat);
     if (format == 0) {
-        const size_t expected = size_t(region.width) * size_t(region.height) * size_t(region.depth) * info.bytesPerTexel;
+        const size_t expected =
+            size_t(region.width) * size_t(region.height) * size_t(region.depth) * info.bytesPerTexel;
         CHECK(bytes == expected, fmt::format("write of {} bytes where {} are needed", bytes, expected));
         format = info.transferFormat;
         type = info.transferType;
@@ -143,7 +155,8 @@ void Texture::write(const TextureRegion& region, const void* data, size_t bytes,
     if (spec_.target == GL_TEXTURE_2D)
         glTextureSubImage2D(id(), region.mip, region.x, region.y, region.width, region.height, format, type, data);
     else
-        glTextureSubImage3D(id(), region.mip, region.x, region.y, region.z, region.width, region.height, region.depth, format, type, data);
+        glTextureSubImage3D(id(), region.mip, region.x, region.y, region.z, region.width, region.height, region.depth,
+                            format, type, data);
 }
 
 void Texture::clear(float x, float y, float z, float w) {
@@ -151,7 +164,8 @@ void Texture::clear(float x, float y, float z, float w) {
     const float color[4] = {x, y, z, w};
     const bool depth = info.formatClass == FormatClass::Depth;
     CHECK(depth || info.formatClass == FormatClass::Float, fmt::format("clear() of {}, an integer format", info.name));
-    for (int mip = 0; mip < spec_.mips; ++mip) glClearTexImage(id(), mip, depth ? GL_DEPTH_COMPONENT : GL_RGBA, GL_FLOAT, color);
+    for (int mip = 0; mip < spec_.mips; ++mip)
+        glClearTexImage(id(), mip, depth ? GL_DEPTH_COMPONENT : GL_RGBA, GL_FLOAT, color);
 }
 
 void Texture::clearInteger(uint32_t x, uint32_t y, uint32_t z, uint32_t w) {
@@ -159,7 +173,8 @@ void Texture::clearInteger(uint32_t x, uint32_t y, uint32_t z, uint32_t w) {
     const bool isSigned = info.formatClass == FormatClass::SignedInt;
     CHECK(isSigned || info.formatClass == FormatClass::UnsignedInt, fmt::format("clearInteger() of {}", info.name));
     const uint32_t value[4] = {x, y, z, w};
-    for (int mip = 0; mip < spec_.mips; ++mip) glClearTexImage(id(), mip, GL_RGBA_INTEGER, isSigned ? GL_INT : GL_UNSIGNED_INT, value);
+    for (int mip = 0; mip < spec_.mips; ++mip)
+        glClearTexImage(id(), mip, GL_RGBA_INTEGER, isSigned ? GL_INT : GL_UNSIGNED_INT, value);
 }
 
 void Texture::generateMips() {

@@ -11,8 +11,11 @@ VertexArray::VertexArray(std::string_view name, std::span<const VertexAttribute>
     for (const VertexAttribute& attribute : attributes) {
         glEnableVertexArrayAttrib(id, attribute.location);
         glVertexArrayVertexBuffer(id, binding, attribute.buffer, GLintptr(attribute.offset), attribute.stride);
-        if (attribute.integer) glVertexArrayAttribIFormat(id, attribute.location, attribute.components, attribute.type, 0);
-        else glVertexArrayAttribFormat(id, attribute.location, attribute.components, attribute.type, attribute.normalised, 0);
+        if (attribute.integer)
+            glVertexArrayAttribIFormat(id, attribute.location, attribute.components, attribute.type, 0);
+        else
+            glVertexArrayAttribFormat(id, attribute.location, attribute.components, attribute.type,
+                                      attribute.normalised, 0);
         glVertexArrayAttribBinding(id, attribute.location, binding);
         glVertexArrayBindingDivisor(id, binding, attribute.divisor);
         ++binding;

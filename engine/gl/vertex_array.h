@@ -14,11 +14,11 @@ struct VertexAttribute {
     GLint components = 3;
     GLenum type = GL_FLOAT;
     GLboolean normalised = GL_FALSE;
-    GLuint buffer = 0;     // GL name
-    uint64_t offset = 0;   // bytes of the first vertex
-    GLsizei stride = 0;    // bytes between vertices
-    GLuint divisor = 0;    // 1: one value an instance
-    bool integer = false;  // the shader has an int or uint
+    GLuint buffer = 0;    // GL name
+    uint64_t offset = 0;  // bytes of the first vertex
+    GLsizei stride = 0;   // bytes between vertices
+    GLuint divisor = 0;   // 1: one value an instance
+    bool integer = false; // the shader has an int or uint
 };
 
 /// Attributes and an index buffer. Keeps names, not buffers: they must live as long. Empty when moved from.

@@ -37,7 +37,8 @@ private:
 
 class GlfwPlatform final : public ContextPlatform {
 public:
-    GlfwPlatform(std::shared_ptr<GlfwLibrary> library, GLFWwindow* window) : library_(std::move(library)), window_(window) {}
+    GlfwPlatform(std::shared_ptr<GlfwLibrary> library, GLFWwindow* window)
+        : library_(std::move(library)), window_(window) {}
     ~GlfwPlatform() override { glfwDestroyWindow(window_); }
 
     [[nodiscard]] const char* name() const override { return "glfw"; }
@@ -47,7 +48,9 @@ public:
         return Error{fmt::format("glfw: the window's context cannot be made current: {}", lastGlfwError())};
     }
     void releaseCurrent() override { glfwMakeContextCurrent(nullptr); }
-    [[nodiscard]] void* getProcAddress(const char* function) override { return reinterpret_cast<void*>(glfwGetProcAddress(function)); }
+    [[nodiscard]] void* getProcAddress(const char* function) override {
+        return reinterpret_cast<void*>(glfwGetProcAddress(function));
+    }
 
 private:
     std::shared_ptr<GlfwLibrary> library_;
@@ -74,8 +77,10 @@ Result<Window> Window::create(const WindowOptions& options) {
     Result<std::shared_ptr<GlfwLibrary>> library = GlfwLibrary::open();
     if (!library) return library.error();
     GLFWwindow* handle = openWindow(options);
-    if (handle == nullptr) return Error{fmt::format("no window with an OpenGL 4.5 core context can be opened: {}", lastGlfwError())};
-    Result<Context> context = Context::adopt(std::make_unique<GlfwPlatform>(std::move(*library), handle), options.context);
+    if (handle == nullptr)
+        return Error{fmt::format("no window with an OpenGL 4.5 core context can be opened: {}", lastGlfwError())};
+    Result<Context> context =
+        Context::adopt(std::make_unique<GlfwPlatform>(std::move(*library), handle), options.context);
     if (!context) return context.error();
     glfwSwapInterval(int(options.swapInterval));
     Window window;
@@ -84,7 +89,8 @@ Result<Window> Window::create(const WindowOptions& options) {
     return window;
 }
 
-Window::Window(Window&& other) noexcept : handle_(std::exchange(other.handle_, nullptr)), context_(std::move(other.context_)) {}
+Window::Window(Window&& other) noexcept
+    : handle_(std::exchange(other.handle_, nullptr)), context_(std::move(other.context_)) {}
 
 Window& Window::operator=(Window&& other) noexcept {
     if (this == &other) return *this;

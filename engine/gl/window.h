@@ -1,6 +1,6 @@
 #pragma once
-// A window with an OpenGL context, by GLFW: the target tyndall_gl_window, apart from tyndall_gl, so that programs without a window
-// need no GLFW.
+// A window with an OpenGL context, by GLFW: the target tyndall_gl_window, apart from tyndall_gl, so that programs
+// without a window need no GLFW.
 
 #include <memory>
 #include <string>
@@ -24,7 +24,8 @@ struct WindowOptions {
     ContextOptions context{}; // back end and device are the window system's choice
 };
 
-/// A window and its context, current on the thread that made it. Empty when moved from. All windows belong to one thread.
+/// A window and its context, current on the thread that made it. Empty when moved from. All windows belong to one
+/// thread.
 class Window {
 public:
     /// Errors: no display, or a driver without OpenGL 4.5 core.

@@ -60,8 +60,8 @@ TEST_P(BufferTest, ASizeThatNoGpuHasIsAnErrorWithTheName) {
     EXPECT_THAT(buffer.message(), ::testing::HasSubstr("enormous"));
 }
 
-/// Frames of random sizes go through a ring that is much smaller than their sum; the GPU copies each slice to a buffer that is only looked
-/// at in the end. A slice that was reused too early would show a later frame's numbers.
+/// Frames of random sizes go through a ring that is much smaller than their sum; the GPU copies each slice to a buffer
+/// that is only looked at in the end. A slice that was reused too early would show a later frame's numbers.
 TEST_P(BufferTest, TheRingNeverOverwritesWhatTheGpuHasYetToRead) {
     std::mt19937 random(uint32_t(test::seed()));
     UploadRing ring("ring", 8192);

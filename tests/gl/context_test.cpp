@@ -20,10 +20,13 @@ struct Kind {
     const char* name;
     Factory make;
 };
-std::string kindName(const ::testing::TestParamInfo<Kind>& kind) { return std::string_view(kind.param.name) == "osmesa" ? "Osmesa" : "EglSurfaceless"; }
+std::string kindName(const ::testing::TestParamInfo<Kind>& kind) {
+    return std::string_view(kind.param.name) == "osmesa" ? "Osmesa" : "EglSurfaceless";
+}
 class ContextTest : public ::testing::TestWithParam<Kind> {};
 INSTANTIATE_TEST_SUITE_P(On, ContextTest,
-                         ::testing::Values(Kind{"egl-surfaceless", Context::createEglSurfaceless}, Kind{"osmesa", Context::createOsmesa}),
+                         ::testing::Values(Kind{"egl-surfaceless", Context::createEglSurfaceless},
+                                           Kind{"osmesa", Context::createOsmesa}),
                          kindName);
 
 /// Collects what is logged while it lives.

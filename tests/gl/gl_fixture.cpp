@@ -37,8 +37,10 @@ gl::Context* testContext(TestBackend backend, std::string& why) {
         options.backend = backend == TestBackend::Egl ? gl::Backend::Egl : gl::Backend::Osmesa;
         options.debug = gl::DebugMode::Synchronous;
         Result<gl::Context> made = gl::Context::create(options);
-        if (made) context = std::move(*made);
-        else failure = made.message();
+        if (made)
+            context = std::move(*made);
+        else
+            failure = made.message();
     }
     why = failure;
     if (!context) return nullptr;

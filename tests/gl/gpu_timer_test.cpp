@@ -18,8 +18,8 @@ double milliseconds() {
     return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
-/// Work of a length that can be chosen, as a draw and as a compute shader. The latter reads what was drawn: without that a driver may do
-/// both at once, and times overlap.
+/// Work of a length that can be chosen, as a draw and as a compute shader. The latter reads what was drawn: without
+/// that a driver may do both at once, and times overlap.
 struct Work {
     ShaderLibrary library;
     const Program* compute = nullptr;
@@ -30,10 +30,15 @@ struct Work {
     FramebufferCache framebuffers;
 
     Work() {
-        const std::string loop = "uniform int steps;\nfloat work(float x) { for (int i = 0; i < steps; ++i) x = sin(x) + 1.0; return x; }\n";
-        library.addSource("work.comp", "layout(local_size_x = 64) in;\nuniform sampler2D drawn;\nlayout(std430) buffer Out { float results[]; };\n" + loop +
-                                           "void main() { results[gl_GlobalInvocationID.x] = work(texelFetch(drawn, ivec2(0), 0).r); }\n");
-        library.addSource("work.vert", "void main() { gl_Position = vec4(gl_VertexID == 1 ? 3.0 : -1.0, gl_VertexID == 2 ? 3.0 : -1.0, 0.5, 1.0); }\n");
+        const std::string loop =
+            "uniform int steps;\nfloat work(float x) { for (int i = 0; i < steps; ++i) x = sin(x) + 1.0; return x; }\n";
+        library.addSource(
+            "work.comp",
+            "layout(local_size_x = 64) in;\nuniform sampler2D drawn;\nlayout(std430) buffer Out { float results[]; "
+            "};\n" +
+                loop + "void main() { results[gl_GlobalInvocationID.x] = work(texelFetch(drawn, ivec2(0), 0).r); }\n");
+        library.addSource("work.vert", "void main() { gl_Position = vec4(gl_VertexID == 1 ? 3.0 : -1.0, gl_VertexID == "
+                                       "2 ? 3.0 : -1.0, 0.5, 1.0); }\n");
         library.addSource("work.frag", "out float color;\n" + loop + "void main() { color = work(gl_FragCoord.x); }\n");
         compute = library.compute("work.comp").value();
         raster = library.raster("work.vert", "work.frag").value();
@@ -59,8 +64,7 @@ struct Work {
         glBindFramebuffer(GL_FRAMEBUFFER, 0);
     }
     /// Steps for which `run` takes at least `least` milliseconds, found by doubling; the first run compiles.
-    template <typename Run>
-    static int calibrate(Run run, double least) {
+    template <typename Run> static int calibrate(Run run, double least) {
         run(1);
         glFinish();
         for (int steps = 64;; steps *= 2) {
@@ -84,8 +88,7 @@ protected:
         GlTest::TearDown();
     }
     /// GPU milliseconds of one span around `run`, and the wall-clock time from before it to its end.
-    template <typename Run>
-    std::pair<double, double> timeOf(Run run, int steps) {
+    template <typename Run> std::pair<double, double> timeOf(Run run, int steps) {
         GpuTimer timer(4);
         glFinish();
         const double begin = milliseconds();
@@ -101,10 +104,9 @@ protected:
         EXPECT_EQ(times.at(0).spans.size(), 1u);
         return {times.at(0).spans.at(0).milliseconds, wall};
     }
-    /// Work that fills a span cannot take longer than the wall-clock time around it, and takes most of that in at least one of several
-    /// tries: a busy machine wakes threads late.
-    template <typename Run>
-    void expectTimeOf(Run run) {
+    /// Work that fills a span cannot take longer than the wall-clock time around it, and takes most of that in at least
+    /// one of several tries: a busy machine wakes threads late.
+    template <typename Run> void expectTimeOf(Run run) {
         const int steps = Work::calibrate(run, 50.0);
         double best = 0;
         for (int attempt = 0; attempt < 20 && best < 0.8; ++attempt) {
@@ -118,8 +120,12 @@ protected:
 };
 TYNDALL_GL_TESTS(GpuTimerTest);
 
-TEST_P(GpuTimerTest, ComputeWorkHasItsTime) { expectTimeOf([&](int steps) { work->dispatch(steps); }); }
-TEST_P(GpuTimerTest, DrawsHaveTheirTime) { expectTimeOf([&](int steps) { work->draw(steps); }); }
+TEST_P(GpuTimerTest, ComputeWorkHasItsTime) {
+    expectTimeOf([&](int steps) { work->dispatch(steps); });
+}
+TEST_P(GpuTimerTest, DrawsHaveTheirTime) {
+    expectTimeOf([&](int steps) { work->draw(steps); });
+}
 
 TEST_P(GpuTimerTest, TimeIsGivenToTheSpanThatTookIt) {
     const int steps = Work::calibrate([&](int n) { work->draw(n); }, 50.0);
@@ -149,8 +155,8 @@ TEST_P(GpuTimerTest, TimeIsGivenToTheSpanThatTookIt) {
     EXPECT_GT(spans[4].milliseconds, spans[3].milliseconds);
     double sum = 0;
     for (size_t i = 1; i < 5; ++i) sum += spans[i].milliseconds;
-    EXPECT_GE(spans[0].milliseconds * 1.001, sum)
-        << spans[1].milliseconds << " + " << spans[2].milliseconds << " + " << spans[3].milliseconds << " + " << spans[4].milliseconds;
+    EXPECT_GE(spans[0].milliseconds * 1.001, sum) << spans[1].milliseconds << " + " << spans[2].milliseconds << " + "
+                                                  << spans[3].milliseconds << " + " << spans[4].milliseconds;
 }
 
 /// While the GPU is busy with the frame, asking for its times must return at once and without them.

@@ -63,7 +63,8 @@ TEST_P(ObjectTest, EveryKindIsCountedWhileItLives) {
         for (ObjectKind kind : {ObjectKind::Buffer, ObjectKind::Texture, ObjectKind::Sampler, ObjectKind::Framebuffer,
                                 ObjectKind::VertexArray, ObjectKind::Fence})
             EXPECT_EQ(context().liveObjects().count(kind), 1) << objectKindName(kind);
-        EXPECT_EQ(context().liveObjects().describe(), "1 buffer, 1 texture, 1 sampler, 1 framebuffer, 1 vertex array, 1 fence");
+        EXPECT_EQ(context().liveObjects().describe(),
+                  "1 buffer, 1 texture, 1 sampler, 1 framebuffer, 1 vertex array, 1 fence");
         EXPECT_EQ(context().liveObjects().bytes, 4 + 2 * 2 * 16);
     }
     EXPECT_EQ(context().liveObjects().describe(), "none");
@@ -89,7 +90,8 @@ TEST_P(ObjectTest, AnErrorOfTheDriverIsRecordedWithTheGroupsAroundIt) {
     ASSERT_EQ(messages.size(), 1u);
     EXPECT_THAT(messages[0], HasSubstr("frame > gi.lpv.inject"));
     EXPECT_THAT(messages[0], HasSubstr("GL error"));
-    while (glGetError() != GL_NO_ERROR) {}
+    while (glGetError() != GL_NO_ERROR) {
+    }
 }
 
 TEST_P(ObjectTest, DebugGroupsAloneSayNothing) {
@@ -102,7 +104,8 @@ TEST_P(ObjectTest, DebugGroupsAloneSayNothing) {
 TEST(DebugTable, DropsNothingWithoutAReason) {
     for (const HarmlessMessage& row : harmlessMessages()) {
         EXPECT_GT(std::string_view(row.reason).size(), 10u);
-        EXPECT_TRUE(row.id != 0 || row.source != GL_DONT_CARE || row.text[0] != '\0') << "a row may not match everything";
+        EXPECT_TRUE(row.id != 0 || row.source != GL_DONT_CARE || row.text[0] != '\0')
+            << "a row may not match everything";
         if (row.source != GL_DEBUG_SOURCE_SHADER_COMPILER) {
             EXPECT_NE(row.type, GLenum(GL_DEBUG_TYPE_ERROR));
             EXPECT_NE(row.type, GLenum(GL_DONT_CARE));
@@ -143,7 +146,9 @@ TEST_P(ObjectTest, AFramebufferIsMadeOncePerSetOfAttachments) {
 }
 
 TEST_P(ObjectTest, ClearingAFramebufferReachesTheAttachedMipAndLayerAlone) {
-    Texture array("array", {.target = GL_TEXTURE_2D_ARRAY, .internalFormat = GL_R32F, .width = 4, .height = 4, .depth = 3, .mips = 2});
+    Texture array(
+        "array",
+        {.target = GL_TEXTURE_2D_ARRAY, .internalFormat = GL_R32F, .width = 4, .height = 4, .depth = 3, .mips = 2});
     array.clear(7.0f);
     FramebufferCache cache;
     const Attachment target[] = {{&array, 1, 2}};
@@ -168,7 +173,8 @@ TEST_P(ObjectTest, AFramebufferThatCannotBeIsRefusedWithTheAttachments) {
     }
     EXPECT_EQ(cache.size(), 0u);
     takeHighSeverityMessages();
-    while (glGetError() != GL_NO_ERROR) {}
+    while (glGetError() != GL_NO_ERROR) {
+    }
 }
 
 TEST_P(ObjectTest, ASamplerIsMadeOncePerSpec) {
@@ -190,7 +196,8 @@ TEST_P(ObjectTest, AnisotropyIsClampedToTheDriversMost) {
     SamplerSpec spec;
     spec.anisotropy = 1e6f;
     const GLuint sampler = cache.get(spec);
-    if (!context().capabilities().has("GL_EXT_texture_filter_anisotropic")) GTEST_SKIP() << "this driver has no anisotropic filter";
+    if (!context().capabilities().has("GL_EXT_texture_filter_anisotropic"))
+        GTEST_SKIP() << "this driver has no anisotropic filter";
     GLfloat value = 0;
     glGetSamplerParameterfv(sampler, GL_TEXTURE_MAX_ANISOTROPY_EXT, &value);
     EXPECT_EQ(value, context().capabilities().limits.anisotropy);
@@ -200,9 +207,16 @@ TEST_P(ObjectTest, AnisotropyIsClampedToTheDriversMost) {
 TEST_P(ObjectTest, AVertexArrayKnowsItsBuffersAndStrides) {
     const Buffer vertices("vertices", 1024);
     const Buffer indices("indices", 64);
-    const VertexAttribute attributes[] = {{.location = 0, .components = 3, .buffer = vertices.id(), .offset = 0, .stride = 32},
-                                          {.location = 3, .components = 1, .type = GL_UNSIGNED_INT, .buffer = vertices.id(),
-                                           .offset = 12, .stride = 32, .divisor = 1, .integer = true}};
+    const VertexAttribute attributes[] = {
+        {.location = 0, .components = 3, .buffer = vertices.id(), .offset = 0, .stride = 32},
+        {.location = 3,
+         .components = 1,
+         .type = GL_UNSIGNED_INT,
+         .buffer = vertices.id(),
+         .offset = 12,
+         .stride = 32,
+         .divisor = 1,
+         .integer = true}};
     VertexArray array("mesh", attributes, indices.id());
     GLint value = 0;
     glGetVertexArrayiv(array.id(), GL_ELEMENT_ARRAY_BUFFER_BINDING, &value);

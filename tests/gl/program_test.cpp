@@ -167,7 +167,8 @@ TEST_P(ProgramTest, SharedStructsHaveOneLayoutInBothLanguages) {
 
 TEST_P(ProgramTest, ARasterProgramDraws) {
     ShaderLibrary library = libraryOf({
-        {"t.vert", "void main() { gl_Position = vec4(gl_VertexID == 1 ? 3.0 : -1.0, gl_VertexID == 2 ? 3.0 : -1.0, 0.5, 1.0); }\n"},
+        {"t.vert", "void main() { gl_Position = vec4(gl_VertexID == 1 ? 3.0 : -1.0, gl_VertexID == 2 ? 3.0 : -1.0, "
+                   "0.5, 1.0); }\n"},
         {"t.frag", "out vec4 color;\nvoid main() { color = vec4(gl_FragCoord.xy, gl_FragCoord.z, LEVEL); }\n"},
     });
     const Result<const Program*> program = library.raster("t.vert", "t.frag", {{"LEVEL", 7}});
@@ -246,8 +247,10 @@ TEST_P(ProgramTest, TooManyBindingsAreAnErrorAndNotACrash) {
 
 TEST_P(ProgramTest, WhatTheCompilerRemarksIsKeptWithFileAndLine) {
     ShaderLibrary library = libraryOf({
-        {"t.comp", "layout(local_size_x = 1) in;\nlayout(std430) buffer Out { float result; };\nvoid main() {\n    float x;\n    result = x;\n}\n"},
-        {"clean.comp", "layout(local_size_x = 1) in;\nlayout(std430) buffer Out { float result; };\nvoid main() { result = 1.0; }\n"},
+        {"t.comp", "layout(local_size_x = 1) in;\nlayout(std430) buffer Out { float result; };\nvoid main() {\n    "
+                   "float x;\n    result = x;\n}\n"},
+        {"clean.comp",
+         "layout(local_size_x = 1) in;\nlayout(std430) buffer Out { float result; };\nvoid main() { result = 1.0; }\n"},
     });
     EXPECT_EQ(library.compute("clean.comp").value()->warnings(), "");
     const std::string warnings = library.compute("t.comp").value()->warnings();
@@ -256,7 +259,8 @@ TEST_P(ProgramTest, WhatTheCompilerRemarksIsKeptWithFileAndLine) {
 }
 
 TEST_P(ProgramTest, MovedFromIsEmpty) {
-    const StageSource stage{GL_COMPUTE_SHADER, {"#version 450 core\nlayout(local_size_x = 2) in;\nvoid main() {}\n", {"t.comp"}}};
+    const StageSource stage{GL_COMPUTE_SHADER,
+                            {"#version 450 core\nlayout(local_size_x = 2) in;\nvoid main() {}\n", {"t.comp"}}};
     Result<Program> built = Program::build("t.comp", {&stage, 1});
     ASSERT_TRUE(built.ok()) << built.message();
     Program moved = std::move(*built);

@@ -16,8 +16,9 @@ namespace {
 namespace fs = std::filesystem;
 using ::testing::HasSubstr;
 
-constexpr const char* kShader = "#include \"lib/value.glsl\"\nlayout(local_size_x = 1) in;\nlayout(std430) buffer Out { float result; };\n"
-                                "void main() { result = value(); }\n";
+constexpr const char* kShader =
+    "#include \"lib/value.glsl\"\nlayout(local_size_x = 1) in;\nlayout(std430) buffer Out { float result; };\n"
+    "void main() { result = value(); }\n";
 
 /// A folder of shaders that a library watches, and a way to run what is in it.
 class ShaderLibraryTest : public test::GlTest {
@@ -55,7 +56,8 @@ protected:
     }
     /// Warnings that mention `text`.
     [[nodiscard]] size_t warningsWith(std::string_view text) const {
-        return size_t(std::ranges::count_if(warnings, [&](const std::string& w) { return w.find(text) != std::string::npos; }));
+        return size_t(
+            std::ranges::count_if(warnings, [&](const std::string& w) { return w.find(text) != std::string::npos; }));
     }
 
     fs::path folder = test::scratchDir("shaders");
@@ -84,7 +86,9 @@ TEST_P(ShaderLibraryTest, AProgramIsMadeOnceAndStaysInItsPlace) {
 
 TEST_P(ShaderLibraryTest, AChangedIncludeMakesTheProgramsThatUseItAnew) {
     write("a.comp", kShader);
-    write("b.comp", "layout(local_size_x = 1) in;\nlayout(std430) buffer Out { float result; };\nvoid main() { result = 5.0; }\n");
+    write(
+        "b.comp",
+        "layout(local_size_x = 1) in;\nlayout(std430) buffer Out { float result; };\nvoid main() { result = 5.0; }\n");
     write("lib/value.glsl", "float value() { return 1.0; }\n");
     ShaderLibrary lib = library();
     const Program* a = lib.compute("a.comp").value();
@@ -131,7 +135,9 @@ TEST_P(ShaderLibraryTest, AProgramThatNeverWorkedIsTriedAgainWhenItsFileChanges)
     const Result<const Program*> first = lib.compute("a.comp");
     ASSERT_FALSE(first.ok());
     EXPECT_EQ(lib.compute("a.comp").message(), first.message());
-    write("a.comp", "layout(local_size_x = 1) in;\nlayout(std430) buffer Out { float result; };\nvoid main() { result = 4.0; }\n");
+    write(
+        "a.comp",
+        "layout(local_size_x = 1) in;\nlayout(std430) buffer Out { float result; };\nvoid main() { result = 4.0; }\n");
     EXPECT_EQ(lib.pollChanges(), 1);
     EXPECT_EQ(run(*lib.compute("a.comp").value()), 4.0f);
 }
@@ -150,7 +156,8 @@ TEST_P(ShaderLibraryTest, AFileThatIsGoneForAMomentIsNoChange) {
 }
 
 TEST_P(ShaderLibraryTest, TheFolderComesBeforeAddedSourcesAndTheseBeforeEmbeddedOnes) {
-    static constexpr EmbeddedShader kEmbedded[] = {{"a.comp", kShader}, {"lib/value.glsl", "float value() { return 1.0; }\n"}, {"variants.txt", "a.comp\n"}};
+    static constexpr EmbeddedShader kEmbedded[] = {
+        {"a.comp", kShader}, {"lib/value.glsl", "float value() { return 1.0; }\n"}, {"variants.txt", "a.comp\n"}};
     ShaderLibraryOptions options;
     options.embedded = kEmbedded;
     options.folder = folder;
@@ -179,13 +186,23 @@ TEST_P(ShaderLibraryTest, AProgramIsListedByVariantsOrByItsPlugin) {
 }
 
 TEST_P(ShaderLibraryTest, TheEnvironmentNamesTheFolder) {
-    write("env.comp", "layout(local_size_x = 1) in;\nlayout(std430) buffer Out { float result; };\nvoid main() { result = 8.0; }\n");
+    write(
+        "env.comp",
+        "layout(local_size_x = 1) in;\nlayout(std430) buffer Out { float result; };\nvoid main() { result = 8.0; }\n");
     setenv("TYNDALL_SHADER_DIR", folder.c_str(), 1);
     ShaderLibrary lib;
     unsetenv("TYNDALL_SHADER_DIR");
     const Result<const Program*> program = lib.compute("env.comp");
     ASSERT_TRUE(program.ok()) << program.message();
     EXPECT_EQ(run(**program), 8.0f);
+}
+
+TEST_P(ShaderLibraryTest, AFolderThatIsNotThereIsReported) {
+    ShaderLibraryOptions options;
+    options.folder = folder / ("gone-" + std::to_string(int(GetParam())));
+    const ShaderLibrary lib(options);
+    EXPECT_EQ(warningsWith(options.folder.string()), 1u);
+    EXPECT_FALSE(lib.variants().lines().empty()) << "the built-in ones are used";
 }
 
 TEST_P(ShaderLibraryTest, NoPathLeavesTheFolder) {
@@ -204,7 +221,8 @@ TEST_P(ShaderLibraryTest, PrefetchedProgramsAreTheSameAsOthers) {
     for (int32_t level = 0; level < 4; ++level) requests.push_back({{"a.comp"}, {{"LEVEL", level}}});
     lib.prefetch(requests);
     EXPECT_EQ(lib.programCount(), 4u);
-    for (int32_t level = 0; level < 4; ++level) EXPECT_EQ(run(*lib.program(requests[size_t(level)]).value()), float(level));
+    for (int32_t level = 0; level < 4; ++level)
+        EXPECT_EQ(run(*lib.program(requests[size_t(level)]).value()), float(level));
 }
 
 /// A shader that no variant names would never be compiled by a test.

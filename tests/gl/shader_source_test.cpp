@@ -53,7 +53,9 @@ TEST(ShaderSource, AnIncludeIsNumberedAndTheLinesAfterItKeepTheirNumbers) {
 }
 
 TEST(ShaderSource, AnIncludeThatIsNeededTwiceIsThereOnce) {
-    const Folder folder{{{"a.comp", "#include \"b.glsl\"\n#include \"c.glsl\"\n"}, {"b.glsl", "#include \"c.glsl\"\n"}, {"c.glsl", "sea\n"}}};
+    const Folder folder{{{"a.comp", "#include \"b.glsl\"\n#include \"c.glsl\"\n"},
+                         {"b.glsl", "#include \"c.glsl\"\n"},
+                         {"c.glsl", "sea\n"}}};
     const Result<ExpandedShader> shader = folder.expand("a.comp");
     ASSERT_TRUE(shader.ok()) << shader.message();
     EXPECT_EQ(occurrences(shader->text, "sea"), 1u);
@@ -61,7 +63,8 @@ TEST(ShaderSource, AnIncludeThatIsNeededTwiceIsThereOnce) {
 
 /// Only the driver knows whether the first copy counts, so both are there, and a guard lets it take one.
 TEST(ShaderSource, AnIncludeInsideACaseStaysAvailableOutsideIt) {
-    const Folder folder{{{"a.comp", "#if MASK\n#include \"b.glsl\"\n#endif\n#include \"b.glsl\"\n"}, {"b.glsl", "bee\n"}}};
+    const Folder folder{
+        {{"a.comp", "#if MASK\n#include \"b.glsl\"\n#endif\n#include \"b.glsl\"\n"}, {"b.glsl", "bee\n"}}};
     const Result<ExpandedShader> shader = folder.expand("a.comp", {{"MASK", 0}});
     ASSERT_TRUE(shader.ok()) << shader.message();
     EXPECT_EQ(occurrences(shader->text, "bee"), 2u);
@@ -69,7 +72,9 @@ TEST(ShaderSource, AnIncludeInsideACaseStaysAvailableOutsideIt) {
 }
 
 TEST(ShaderSource, WhatIsForCppIsLeftOut) {
-    const Folder folder{{{"a.comp", "#ifdef __cplusplus\n#include \"core/math.h\"\n#ifdef X\ninner\n#endif\ncpp\n#else\nglsl\n#endif\nboth\n"}}};
+    const Folder folder{
+        {{"a.comp",
+          "#ifdef __cplusplus\n#include \"core/math.h\"\n#ifdef X\ninner\n#endif\ncpp\n#else\nglsl\n#endif\nboth\n"}}};
     const Result<ExpandedShader> shader = folder.expand("a.comp");
     ASSERT_TRUE(shader.ok()) << shader.message();
     EXPECT_THAT(shader->text, Not(HasSubstr("core/math.h")));
@@ -80,14 +85,18 @@ TEST(ShaderSource, WhatIsForCppIsLeftOut) {
 }
 
 TEST(ShaderSource, WhatIsCommentedOutIsNotIncluded) {
-    const Folder folder{{{"a.comp", "// #include \"x.glsl\"\n/* begins\n#include \"x.glsl\"\nends */ rest // /*\n  #  include \"b.glsl\" // here\n"}, {"b.glsl", "bee"}}};
+    const Folder folder{{{"a.comp", "// #include \"x.glsl\"\n/* begins\n#include \"x.glsl\"\nends */ rest // /*\n  #  "
+                                    "include \"b.glsl\" // here\n"},
+                         {"b.glsl", "bee"}}};
     const Result<ExpandedShader> shader = folder.expand("a.comp");
     ASSERT_TRUE(shader.ok()) << shader.message();
     EXPECT_THAT(shader->text, HasSubstr("\nbee\n"));
 }
 
 TEST(ShaderSource, ACycleIsRefusedWithItsWay) {
-    const Folder folder{{{"a.comp", "#include \"b.glsl\"\n"}, {"b.glsl", "\n\n#include \"c.glsl\"\n"}, {"c.glsl", "#include \"b.glsl\"\n"}}};
+    const Folder folder{{{"a.comp", "#include \"b.glsl\"\n"},
+                         {"b.glsl", "\n\n#include \"c.glsl\"\n"},
+                         {"c.glsl", "#include \"b.glsl\"\n"}}};
     const Result<ExpandedShader> shader = folder.expand("a.comp");
     ASSERT_FALSE(shader.ok());
     EXPECT_THAT(shader.message(), HasSubstr("c.glsl:1"));
@@ -97,7 +106,9 @@ TEST(ShaderSource, ACycleIsRefusedWithItsWay) {
 }
 
 TEST(ShaderSource, AMissingFileIsNamedWithThePlaceThatWantsIt) {
-    const Folder folder{{{"a.comp", "\n#include \"b.glsl\"\n"}, {"b.glsl", "\n\n#include \"gone.glsl\"\n"}, {"c.comp", "#include <x>\n"}}};
+    const Folder folder{{{"a.comp", "\n#include \"b.glsl\"\n"},
+                         {"b.glsl", "\n\n#include \"gone.glsl\"\n"},
+                         {"c.comp", "#include <x>\n"}}};
     const Result<ExpandedShader> shader = folder.expand("a.comp");
     ASSERT_FALSE(shader.ok());
     EXPECT_THAT(shader.message(), HasSubstr("b.glsl:3"));
@@ -108,21 +119,26 @@ TEST(ShaderSource, AMissingFileIsNamedWithThePlaceThatWantsIt) {
 
 TEST(ShaderSource, MessagesOfEveryDriverGetFileAndLine) {
     const ExpandedShader shader{"", {"a.comp", "lib/b.glsl"}};
-    EXPECT_EQ(mapShaderMessages("0:100012(5): error: `x' undeclared\n\n", shader), "lib/b.glsl:12:5: error: `x' undeclared");
-    EXPECT_EQ(mapShaderMessages("0(7) : error C1008: undefined variable \"x\"\n", shader), "a.comp:7: error C1008: undefined variable \"x\"");
-    EXPECT_EQ(mapShaderMessages("ERROR: 0:100003: 'x' : undeclared identifier", shader), "lib/b.glsl:3: ERROR: 'x' : undeclared identifier");
+    EXPECT_EQ(mapShaderMessages("0:100012(5): error: `x' undeclared\n\n", shader),
+              "lib/b.glsl:12:5: error: `x' undeclared");
+    EXPECT_EQ(mapShaderMessages("0(7) : error C1008: undefined variable \"x\"\n", shader),
+              "a.comp:7: error C1008: undefined variable \"x\"");
+    EXPECT_EQ(mapShaderMessages("ERROR: 0:100003: 'x' : undeclared identifier", shader),
+              "lib/b.glsl:3: ERROR: 'x' : undeclared identifier");
     EXPECT_EQ(mapShaderMessages("error: linking failed\n0:1(1): w", shader), "error: linking failed\na.comp:1:1: w");
     EXPECT_EQ(mapShaderMessages("0:900001(1): error: e", shader), "line 900001:1: error: e");
 }
 
 TEST(Variants, EveryCombinationOfEveryLineIsVisitedOnce) {
-    const Result<VariantList> list = VariantList::parse("# all\nmedia/march.comp EXACT=0,1 OCTAVES=0,2,4  # six\n\ng.vert g.frag\n", "variants.txt");
+    const Result<VariantList> list =
+        VariantList::parse("# all\nmedia/march.comp EXACT=0,1 OCTAVES=0,2,4  # six\n\ng.vert g.frag\n", "variants.txt");
     ASSERT_TRUE(list.ok()) << list.message();
     std::vector<std::string> seen;
     list->forEachVariant([&](const ProgramRequest& request) { seen.push_back(request.describe()); });
-    EXPECT_THAT(seen, ::testing::UnorderedElementsAre("media/march.comp EXACT=0 OCTAVES=0", "media/march.comp EXACT=0 OCTAVES=2",
-                                                      "media/march.comp EXACT=0 OCTAVES=4", "media/march.comp EXACT=1 OCTAVES=0",
-                                                      "media/march.comp EXACT=1 OCTAVES=2", "media/march.comp EXACT=1 OCTAVES=4", "g.vert g.frag"));
+    EXPECT_THAT(seen, ::testing::UnorderedElementsAre(
+                          "media/march.comp EXACT=0 OCTAVES=0", "media/march.comp EXACT=0 OCTAVES=2",
+                          "media/march.comp EXACT=0 OCTAVES=4", "media/march.comp EXACT=1 OCTAVES=0",
+                          "media/march.comp EXACT=1 OCTAVES=2", "media/march.comp EXACT=1 OCTAVES=4", "g.vert g.frag"));
 }
 
 TEST(Variants, ARequestMustNameEveryDefineOfItsLineWithAListedValue) {
@@ -138,10 +154,15 @@ TEST(Variants, ARequestMustNameEveryDefineOfItsLineWithAListedValue) {
 }
 
 TEST(Variants, ABadLineIsRefusedWithItsNumber) {
-    const std::pair<const char*, const char*> cases[] = {
-        {"a.comp\nEXACT=0,1\n", "variants.txt:2"}, {"a.txt\n", "'a.txt'"},      {"a.comp EXACT=\n", "EXACT="},
-        {"a.comp EXACT=yes\n", "'yes'"},           {"a.comp =1\n", "'=1'"},     {"a.comp X=1 X=2\n", "'X'"},
-        {"a.comp X=1,,2\n", "X=1,,2"},             {"a.vert X=1 a.frag\n", "'a.frag'"}, {"a.comp X=99999999999\n", "99999999999"}};
+    const std::pair<const char*, const char*> cases[] = {{"a.comp\nEXACT=0,1\n", "variants.txt:2"},
+                                                         {"a.txt\n", "'a.txt'"},
+                                                         {"a.comp EXACT=\n", "EXACT="},
+                                                         {"a.comp EXACT=yes\n", "'yes'"},
+                                                         {"a.comp =1\n", "'=1'"},
+                                                         {"a.comp X=1 X=2\n", "'X'"},
+                                                         {"a.comp X=1,,2\n", "X=1,,2"},
+                                                         {"a.vert X=1 a.frag\n", "'a.frag'"},
+                                                         {"a.comp X=99999999999\n", "99999999999"}};
     for (const auto& [text, expected] : cases) {
         const Result<VariantList> list = VariantList::parse(text, "variants.txt");
         ASSERT_FALSE(list.ok()) << text;

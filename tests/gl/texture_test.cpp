@@ -23,8 +23,10 @@ std::vector<float> ramp(size_t count, float step) {
 }
 
 TEST_P(TextureTest, FloatsComeBackAsTheyWere) {
-    for (const TextureSpec& spec : {TextureSpec{GL_TEXTURE_2D, GL_RGBA32F, 5, 3, 1, 1}, TextureSpec{GL_TEXTURE_2D_ARRAY, GL_R32F, 4, 3, 5, 1},
-                                    TextureSpec{GL_TEXTURE_3D, GL_RG32F, 3, 4, 5, 1}, TextureSpec{GL_TEXTURE_2D, GL_DEPTH_COMPONENT32F, 7, 2, 1, 1}}) {
+    for (const TextureSpec& spec :
+         {TextureSpec{GL_TEXTURE_2D, GL_RGBA32F, 5, 3, 1, 1}, TextureSpec{GL_TEXTURE_2D_ARRAY, GL_R32F, 4, 3, 5, 1},
+          TextureSpec{GL_TEXTURE_3D, GL_RG32F, 3, 4, 5, 1},
+          TextureSpec{GL_TEXTURE_2D, GL_DEPTH_COMPONENT32F, 7, 2, 1, 1}}) {
         Texture texture("ramp", spec);
         const std::vector<float> values = ramp(size_t(textureBytes(spec)) / 4, 1.0f / 256.0f);
         texture.write(values.data(), values.size() * 4);
@@ -62,7 +64,9 @@ TEST_P(TextureTest, IntegersComeBackAsTheyWere) {
 }
 
 TEST_P(TextureTest, ClearReachesEveryMip) {
-    Texture texture("mips", {.target = GL_TEXTURE_3D, .internalFormat = GL_RGBA16F, .width = 4, .height = 4, .depth = 4, .mips = 3});
+    Texture texture(
+        "mips",
+        {.target = GL_TEXTURE_3D, .internalFormat = GL_RGBA16F, .width = 4, .height = 4, .depth = 4, .mips = 3});
     texture.clear(0.5f, 1.0f, 2.0f, 4.0f);
     for (int mip = 0; mip < 3; ++mip) {
         const std::vector<float> values = readFloats(texture, mip);
@@ -75,7 +79,9 @@ TEST_P(TextureTest, ClearReachesEveryMip) {
 }
 
 TEST_P(TextureTest, ARegionIsWrittenAlone) {
-    Texture texture("region", {.target = GL_TEXTURE_2D_ARRAY, .internalFormat = GL_R32F, .width = 4, .height = 4, .depth = 2, .mips = 2});
+    Texture texture(
+        "region",
+        {.target = GL_TEXTURE_2D_ARRAY, .internalFormat = GL_R32F, .width = 4, .height = 4, .depth = 2, .mips = 2});
     texture.clear(0.0f);
     const float two[2] = {1.0f, 2.0f};
     texture.write({.mip = 1, .x = 1, .y = 0, .z = 1, .width = 1, .height = 2}, two, sizeof two);
@@ -97,7 +103,9 @@ TEST_P(TextureTest, MipsAreMeans) {
 }
 
 TEST_P(TextureTest, AViewSeesTheSameTexels) {
-    Texture array("array", {.target = GL_TEXTURE_2D_ARRAY, .internalFormat = GL_R32F, .width = 4, .height = 2, .depth = 3, .mips = 2});
+    Texture array(
+        "array",
+        {.target = GL_TEXTURE_2D_ARRAY, .internalFormat = GL_R32F, .width = 4, .height = 2, .depth = 3, .mips = 2});
     array.clear(1.0f);
     Texture layer = array.view("layer", GL_TEXTURE_2D, GL_R32F, 0, 1, 1, 1);
     EXPECT_EQ(layer.bytes(), 0) << "storage is counted once";
@@ -129,8 +137,13 @@ TEST_P(TextureTest, FullChainsEndAtOneTexel) {
     EXPECT_EQ(fullMipCount(2, 1), 2);
     EXPECT_EQ(fullMipCount(1280, 720), 11);
     EXPECT_EQ(fullMipCount(9, 9, 17), 5);
-    EXPECT_EQ(textureBytes({.target = GL_TEXTURE_3D, .internalFormat = GL_R32F, .width = 4, .height = 4, .depth = 4, .mips = 3}), 4 * (64 + 8 + 1));
-    EXPECT_EQ(textureBytes({.target = GL_TEXTURE_2D_ARRAY, .internalFormat = GL_R32F, .width = 4, .height = 4, .depth = 4, .mips = 3}), 4 * (64 + 16 + 4));
+    EXPECT_EQ(textureBytes(
+                  {.target = GL_TEXTURE_3D, .internalFormat = GL_R32F, .width = 4, .height = 4, .depth = 4, .mips = 3}),
+              4 * (64 + 8 + 1));
+    EXPECT_EQ(
+        textureBytes(
+            {.target = GL_TEXTURE_2D_ARRAY, .internalFormat = GL_R32F, .width = 4, .height = 4, .depth = 4, .mips = 3}),
+        4 * (64 + 16 + 4));
 }
 
 TEST_P(TextureTest, MovedFromIsEmpty) {
@@ -145,7 +158,8 @@ TEST_P(TextureTest, MovedFromIsEmpty) {
 
 /// GL counts rows from the bottom, images from the top.
 TEST_P(TextureTest, AnImageHasTheTopRowFirst) {
-    Texture texture("rows", {.target = GL_TEXTURE_2D_ARRAY, .internalFormat = GL_R32F, .width = 2, .height = 3, .depth = 2});
+    Texture texture("rows",
+                    {.target = GL_TEXTURE_2D_ARRAY, .internalFormat = GL_R32F, .width = 2, .height = 3, .depth = 2});
     const std::vector<float> values = ramp(12, 1.0f);
     texture.write(values.data(), 48);
     const Image image = readImage(texture, 1);

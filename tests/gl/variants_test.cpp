@@ -26,7 +26,8 @@ TEST_P(VariantsTest, EveryListedVariantCompiles) {
         slowest = std::max(slowest, seconds);
         EXPECT_TRUE(program.ok()) << (program ? "" : program.message());
         // Remarks are shown and not judged: Mesa takes a global variable that main() sets for one without a value.
-        if (program && !(*program)->warnings().empty()) fmt::print("{}:\n{}\n", request.describe(), (*program)->warnings());
+        if (program && !(*program)->warnings().empty())
+            fmt::print("{}:\n{}\n", request.describe(), (*program)->warnings());
         ++count;
     });
     EXPECT_GT(count, 0);

@@ -96,8 +96,10 @@ TEST(Windows, WithoutADisplayThereIsASentence) {
     const std::string display = displayBefore != nullptr ? displayBefore : "";
     setenv("DISPLAY", ":4711", 1);
     const Result<Window> window = Window::create(hidden());
-    if (displayBefore != nullptr) setenv("DISPLAY", display.c_str(), 1);
-    else unsetenv("DISPLAY");
+    if (displayBefore != nullptr)
+        setenv("DISPLAY", display.c_str(), 1);
+    else
+        unsetenv("DISPLAY");
     ASSERT_FALSE(window.ok());
     EXPECT_THAT(window.message(), HasSubstr("no window"));
     EXPECT_EQ(window.message().find('\n'), std::string::npos);
