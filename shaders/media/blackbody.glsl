@@ -4,12 +4,6 @@
 #define TYNDALL_MEDIA_BLACKBODY
 #include "media/density.glsl"
 
-/// xyz: linear sRGB at 1 nit; w: log2 of the luminance in nits.
-layout(std430) readonly buffer Blackbody {
-    vec4 blackbodyRange; // kelvin of the first entry, of the last, 1 / (1/first - 1/last), number of entries - 1
-    vec4 blackbodyTable[];
-};
-
 /// RGB nits of a black body; 0 for matter cooler than the table.
 vec3 blackbodyRadiance(float kelvin) {
     if (!(kelvin >= blackbodyRange.x)) return vec3(0.0);

@@ -4,7 +4,9 @@
 #define TYNDALL_MEDIA_DENSITY
 #include "common/math.glsl"
 #include "shared/medium.h"
+#include "shared/optical_depth.h"
 
+// All that the media bind (bindMedia in engine/renderer/frame_resources.h), so that every shader of theirs knows the names.
 layout(std430) readonly buffer Media {
     MediaHeader mediaHeader;
     MediumData media[];
@@ -12,7 +14,15 @@ layout(std430) readonly buffer Media {
 layout(std430) readonly buffer Bricks {
     BrickData bricks[];
 };
+layout(std430) readonly buffer Blackbody {
+    vec4 blackbodyRange;   // kelvin of the first entry, of the last, 1 / (1/first - 1/last), number of entries - 1
+    vec4 blackbodyTable[]; // xyz: linear sRGB at 1 nit; w: log2 of the luminance in nits
+};
+layout(std430) readonly buffer OpticalDepthViews {
+    OpticalDepthView opticalDepthViews[];
+};
 uniform sampler3D mediumAtlas;
+uniform sampler3D lightOpticalDepth;
 
 bool mediaExact() { return (mediaHeader.flags & kMediaExact) != 0u; }
 

@@ -1,6 +1,12 @@
 // What the media do to the light on its way from the surfaces to the eye: how much gets through, what they scatter towards the
 // eye, and what they emit. At full resolution, or one ray for 2×2 or 4×4 pixels, to be upsampled by upsample.comp.
+//
+// With many lights, each group of 8×8 rays first makes a list of those that reach any of its rays: the same for all, and in
+// order, so that the sums are the same as without lists.
 #define MARCH_PHASE_GROUPS PHASE_GROUPS
+#if IN_SCATTER
+#define MARCH_TILE_LIGHTS
+#endif
 #include "media/march.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
@@ -18,13 +24,80 @@ layout(rgba32f) uniform writeonly image2D emission;
 // Known when compiling: what is not wanted costs nothing.
 const uint kWanted = (IN_SCATTER == 1 ? kMarchInScatter : 0u) | (EMISSION == 1 ? kMarchEmission : 0u);
 
+/// The ray of one of the pixels that a marched ray stands for: its depth is that pixel's own, not a mixture.
+ivec2 fullPixel(ivec2 pixel) {
+    return min(pixel * int(params.factor) + int(params.factor) / 2, textureSize(depth, 0) - 1);
+}
+
+#if IN_SCATTER
+const uint kFewLights = 16u;    // up to so many, a list costs more than it saves
+const uint kListedLights = 1024u; // lights after these are in no list: they always count
+shared uint tileMask[kListedLights / 32u];
+shared uint tileList[kListedLights];
+shared uint tileCount;
+shared uint tileDistance; // bits of the farthest end of a ray: positive floats are in the order of their bits
+
+/// Can the light reach a ray of the group? Its rays lie in a cone around `axis` whose apex is `spread` wide.
+bool reachesTile(uint light, Ray axis, float spread, float halfAngle, float farthest) {
+    float range = lights[light].position.w;
+    if (lights[light].type == kLightDirectional || range <= 0.0) return true;
+    float extent = lights[light].type == kLightRect ? length(lights[light].axisX.xyz) + length(lights[light].axisY.xyz) : lights[light].direction.w;
+    float radius = (range + extent + spread) * 1.001;
+    vec3 toLight = lights[light].position.xyz - axis.origin;
+    float distance = length(toLight);
+    if (distance <= radius) return true;
+    if (distance - radius > farthest) return false;
+    return acos(clamp(dot(toLight, axis.direction) / distance, -1.0, 1.0)) <= halfAngle + asin(radius / distance) + 1e-3;
+}
+
+void makeTileList(float distance) {
+    uint self = gl_LocalInvocationIndex;
+    if (self < kListedLights / 32u) tileMask[self] = 0u;
+    if (self == 0u) tileDistance = 0u;
+    barrier();
+    atomicMax(tileDistance, floatBitsToUint(distance));
+    barrier();
+    ivec2 corner = ivec2(gl_WorkGroupID.xy) * 8;
+    Ray axis = cameraRay(vec2(fullPixel(corner) + fullPixel(corner + 7)) * 0.5 + 0.5);
+    float spread = 0.0;
+    float halfAngle = 0.0;
+    for (int i = 0; i < 4; ++i) {
+        Ray edge = cameraRay(vec2(fullPixel(corner + 7 * ivec2(i & 1, i >> 1))) + 0.5);
+        spread = max(spread, length(edge.origin - axis.origin));
+        halfAngle = max(halfAngle, acos(clamp(dot(edge.direction, axis.direction), -1.0, 1.0)));
+    }
+    uint listed = min(params.lightCount, kListedLights);
+    for (uint light = self; light < listed; light += 64u)
+        if (reachesTile(light, axis, spread, halfAngle, uintBitsToFloat(tileDistance))) atomicOr(tileMask[light >> 5u], 1u << (light & 31u));
+    barrier();
+    if (self == 0u) {
+        tileCount = 0u;
+        for (uint light = 0u; light < listed; ++light)
+            if ((tileMask[light >> 5u] & (1u << (light & 31u))) != 0u) tileList[tileCount++] = light;
+    }
+    barrier();
+}
+
+uint marchLightSlots(uint lightCount) {
+    if (lightCount <= kFewLights) return lightCount;
+    return tileCount + (lightCount > kListedLights ? lightCount - kListedLights : 0u);
+}
+bool marchLight(uint slot, out uint light) {
+    if (params.lightCount <= kFewLights) light = slot;
+    else light = slot < tileCount ? tileList[slot] : kListedLights + slot - tileCount;
+    return true;
+}
+#endif
+
 void main() {
     ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
-    if (any(greaterThanEqual(pixel, imageSize(transmittance)))) return;
-    // The ray of one of the pixels that it stands for: its depth is that pixel's own, not a mixture.
-    ivec2 full = min(pixel * int(params.factor) + int(params.factor) / 2, textureSize(depth, 0) - 1);
+    ivec2 full = fullPixel(pixel);
     vec2 centre = vec2(full) + 0.5;
     float distance = rayDistanceFromDepth(centre, texelFetch(depth, full, 0).r);
+#if IN_SCATTER
+    if (params.lightCount > kFewLights) makeTileList(distance);
+#endif
+    if (any(greaterThanEqual(pixel, imageSize(transmittance)))) return;
     MarchResult march = marchMedia(cameraRay(centre), distance, kWanted, params.lightCount, uvec2(full));
     imageStore(transmittance, pixel, vec4(exp(-march.opticalDepth), 1.0));
 #if IN_SCATTER

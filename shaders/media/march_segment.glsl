@@ -58,6 +58,7 @@ float gatherEnd(uint m, LocalRay ray, float t1) {
     vec3 positive = mix(extinction, vec3(kInfiniteDistance), lessThanEqual(extinction, vec3(0.0)));
     float thinnest = minimumOf(positive);
     t1 = min(t1, kFarthestGather);
+    if (thinnest >= kInfiniteDistance) return t1; // it only shines
     if (kind == kMediumEverywhere) return min(t1, kDeepestGather / thinnest);
     float scaleHeight = media[m].extinction.w;
     float slope = ray.direction.y;

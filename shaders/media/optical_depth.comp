@@ -1,6 +1,5 @@
 // Fills the light-space volume of one light: each thread walks one ray away from the light and stores the grids' optical
 // depth (not transmittance) at every slice, from 0 where the volume begins.
-#define OPTICAL_DEPTH_BUILD
 #include "media/optical_depth.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;

@@ -7,14 +7,6 @@
 #define TYNDALL_MEDIA_OPTICAL_DEPTH
 #include "common/octahedral.glsl"
 #include "media/density.glsl"
-#include "shared/optical_depth.h"
-
-layout(std430) readonly buffer OpticalDepthViews {
-    OpticalDepthView opticalDepthViews[];
-};
-#ifndef OPTICAL_DEPTH_BUILD
-uniform sampler3D lightOpticalDepth;
-#endif
 
 // Optical depths beyond this are as opaque; sums and products of them stay finite.
 const float kOpaque = 1e30;
@@ -170,7 +162,6 @@ bool opticalDepthCoordinates(OpticalDepthView v, vec3 position, out vec3 uvw) {
     return true;
 }
 
-#ifndef OPTICAL_DEPTH_BUILD
 /// Optical depth of the grids between a light and a point, from the light's volume. Linear in the stored depths: texel
 /// centres lie on the planes and edges of the volume, so that nothing is extrapolated.
 vec3 volumeOpticalDepth(OpticalDepthView v, vec3 position) {
@@ -190,6 +181,5 @@ vec3 opticalDepthToLight(uint light, vec3 position, vec3 direction, float distan
     if (kind == kDepthViewMarch) return depth + gridOpticalDepth(position, direction, 0.0, distance);
     return depth + volumeOpticalDepth(opticalDepthViews[light], position);
 }
-#endif
 
 #endif

@@ -1,5 +1,4 @@
 // How much light gets through the media between the eye and the surfaces, where nothing else is wanted of them.
-#define OPTICAL_DEPTH_BUILD
 #include "common/view.glsl"
 #include "media/optical_depth.glsl"
 

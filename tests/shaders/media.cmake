@@ -1,3 +1,4 @@
 tyndall_test(shaders_media LABEL shaders
   SOURCES media_compute.cpp media_depth_test.cpp media_functions_test.cpp media_march_test.cpp
+    media_passes_test.cpp
   DEPENDS tyndall_gl_test_support Tyndall::renderer)

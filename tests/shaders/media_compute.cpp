@@ -1,6 +1,7 @@
 #include "shaders/media_compute.h"
 
 #include <cstring>
+#include <functional>
 #include <stdexcept>
 
 #include "gl/api.h"
@@ -97,16 +98,19 @@ MediaCompute::MediaCompute(const Scene& scene, const MediaOptions& options) {
 void MediaCompute::uploadGrids() {
     std::vector<gpu::BrickData> table;
     std::vector<const float*> slots;
-    for (PlacedMedium& medium : placed_) {
-        if (medium.data.kind != gpu::kMediumGrid) continue;
-        const BrickGrid& grid = *medium.medium->density;
-        medium.data.gridBricks.w = int(table.size());
-        const size_t first = slots.size();
+    const auto add = [&](const BrickGrid& grid) {
+        const size_t first = slots.size(), firstBrick = table.size();
         for (uint32_t i = 0; i < grid.slotCount(); ++i) slots.push_back(grid.samples.data() + size_t(i) * kBrickSampleCount);
         for (const Brick& brick : grid.bricks) {
             const size_t slot = first + brick.slot;
             table.push_back({brick.minimum, brick.maximum, brick.slot == Brick::kNoSlot ? gpu::kNoSlot : uint32_t(slot % 100 | slot / 100 << 10), 0});
         }
+        return int(firstBrick);
+    };
+    for (PlacedMedium& medium : placed_) {
+        if (medium.data.kind != gpu::kMediumGrid) continue;
+        medium.data.gridBricks.w = add(*medium.medium->density);
+        if (medium.data.emission.w > 0) medium.data.temperatureBricks.w = add(*medium.medium->temperature);
     }
     const int columns = int(std::min<size_t>(std::max<size_t>(slots.size(), 1), 100)), rows = int(slots.size() / 100) + 1;
     atlas_ = gl::Texture("atlas", {GL_TEXTURE_3D, GL_R32F, 9 * columns, 9 * rows, 9, 1});
@@ -126,10 +130,10 @@ void MediaCompute::bind(const gl::Program& program) {
     if (const gl::ProgramResource* block = program.find("View")) glBindBufferBase(GL_UNIFORM_BUFFER, GLuint(block->binding), view_.id());
 }
 
-std::vector<vec4> MediaCompute::run(const std::vector<std::string>& includes, std::string_view body, std::span<const vec4> inputs, uint32_t count) {
-    gl::ShaderLibrary library;
-    library.addSource("test/media.comp", sourceOf(includes, body));
-    Result<const gl::Program*> found = library.compute("test/media.comp");
+std::vector<vec4> MediaCompute::run(gl::ShaderLibrary& library, const std::vector<std::string>& includes, std::string_view body, std::span<const vec4> inputs, uint32_t count) {
+    const std::string source = sourceOf(includes, body), path = "test/" + std::to_string(std::hash<std::string>{}(source)) + ".comp";
+    library.addSource(path, source);
+    Result<const gl::Program*> found = library.compute(path);
     if (!found) throw std::runtime_error(found.message());
     const gl::Program& program = **found;
     const vec4 none(0);

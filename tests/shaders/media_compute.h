@@ -37,8 +37,9 @@ public:
     MediaCompute(const Scene& scene, const MediaOptions& options);
 
     /// Runs `body` once for each of `count` invocations. It sees `uint id`, `vec4 inputs[]`, `vec4 outputs[]`, what `includes`
-    /// (paths below shaders/) define, and the media. Throws with the driver's message where it does not compile.
-    std::vector<vec4> run(const std::vector<std::string>& includes, std::string_view body, std::span<const vec4> inputs, uint32_t count);
+    /// (paths below shaders/) define, and the media. Throws with the driver's message where it does not compile. `library` keeps the
+    /// program for the next run of the same lines.
+    std::vector<vec4> run(gl::ShaderLibrary& library, const std::vector<std::string>& includes, std::string_view body, std::span<const vec4> inputs, uint32_t count);
 
     [[nodiscard]] std::span<const PlacedMedium> placed() const { return placed_; }
 

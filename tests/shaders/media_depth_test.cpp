@@ -60,9 +60,10 @@ Rays randomRays(double spread, int count, uint64_t seed) {
 
 void expectDepths(const Medium& medium, const dmat4& worldFromNode, const Rays& rays, double relative, double absolute, const MediaOptions& options = {}) {
     const Scene scene = sceneOf(std::span(&medium, 1), std::span(&worldFromNode, 1));
+    gl::ShaderLibrary library;
     MediaCompute compute(scene, options);
     ASSERT_EQ(compute.placed().size(), 1u);
-    const auto outputs = compute.run({"media/optical_depth.glsl"}, kBody, rays.inputs, uint32_t(rays.count()));
+    const auto outputs = compute.run(library, {"media/optical_depth.glsl"}, kBody, rays.inputs, uint32_t(rays.count()));
     for (size_t i = 0; i < rays.count(); ++i) {
         const dvec3 exact = opticalDepth(medium, worldFromNode, rays.segment(i));
         for (int c = 0; c < 3; ++c) {
@@ -182,9 +183,10 @@ TEST_P(MediaDepth, FarFromTheOriginNothingIsLost) {
     const Scene scene = sceneOf(std::span(&medium, 1), std::span(&world, 1));
     MediaOptions options;
     options.renderOrigin = away;
+    gl::ShaderLibrary library;
     MediaCompute compute(scene, options);
     const Rays rays = randomRays(2, 300, seed() + 9);
-    const auto outputs = compute.run({"media/optical_depth.glsl"}, kBody, rays.inputs, uint32_t(rays.count()));
+    const auto outputs = compute.run(library, {"media/optical_depth.glsl"}, kBody, rays.inputs, uint32_t(rays.count()));
     for (size_t i = 0; i < rays.count(); ++i) {
         const dvec3 exact = opticalDepth(medium, dmat4(1.0), rays.segment(i));
         for (int c = 0; c < 3; ++c) EXPECT_NEAR(double(outputs[i][c]), exact[c], 2e-5 + 2e-5 * exact[c]);
@@ -195,9 +197,10 @@ TEST_P(MediaDepth, OverlappingMediaAddUp) {
     std::vector<Medium> media{homogeneous(MediumKind::Box), homogeneous(MediumKind::Sphere), gridMedium(glm::scale(dmat4(1.0), dvec3(0.05)), seed()), homogeneous(MediumKind::Height)};
     const std::vector<dmat4> world{dmat4(1.0), slanted(), dmat4(1.0), dmat4(1.0)};
     const Scene scene = sceneOf(media, world);
+    gl::ShaderLibrary library;
     MediaCompute compute(scene, {});
     const Rays rays = randomRays(2, 300, seed() + 10);
-    const auto outputs = compute.run({"media/optical_depth.glsl"}, kBody, rays.inputs, uint32_t(rays.count()));
+    const auto outputs = compute.run(library, {"media/optical_depth.glsl"}, kBody, rays.inputs, uint32_t(rays.count()));
     for (size_t i = 0; i < rays.count(); ++i) {
         dvec3 exact(0);
         for (size_t m = 0; m < media.size(); ++m) exact += opticalDepth(media[m], world[m], rays.segment(i));

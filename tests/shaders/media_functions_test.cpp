@@ -12,9 +12,10 @@ using MediaFunctions = GlTest;
 TYNDALL_GL_TESTS(MediaFunctions);
 
 std::vector<vec4> runOnly(const std::vector<std::string>& includes, std::string_view body, const std::vector<vec4>& inputs) {
+    gl::ShaderLibrary library;
     const Scene scene;
     MediaCompute compute(scene, {});
-    return compute.run(includes, body, inputs, uint32_t(inputs.size()));
+    return compute.run(library, includes, body, inputs, uint32_t(inputs.size()));
 }
 
 TEST_P(MediaFunctions, OneMinusExpOverXIsAccurateFromZeroToOpaque) {
