@@ -247,15 +247,16 @@ TEST_P(ProgramTest, TooManyBindingsAreAnErrorAndNotACrash) {
 
 TEST_P(ProgramTest, WhatTheCompilerRemarksIsKeptWithFileAndLine) {
     ShaderLibrary library = libraryOf({
-        {"t.comp", "layout(local_size_x = 1) in;\nlayout(std430) buffer Out { float result; };\nvoid main() {\n    "
-                   "float x;\n    result = x;\n}\n"},
-        {"clean.comp",
-         "layout(local_size_x = 1) in;\nlayout(std430) buffer Out { float result; };\nvoid main() { result = 1.0; }\n"},
+        {"t.comp", "layout(local_size_x = 1) in;\nlayout(std430) buffer Out { float result; };\n"
+                   "struct Pair { float a, b; };\nPair pair;\nfloat sum() {\n    return pair.a + pair.b;\n}\n"
+                   "void main() { result = sum(); }\n"},
+        {"clean.comp", "layout(local_size_x = 1) in;\nlayout(std430) buffer Out { float result; };\n"
+                       "void main() { result = 1.0; }\n"},
     });
     EXPECT_EQ(library.compute("clean.comp").value()->warnings(), "");
     const std::string warnings = library.compute("t.comp").value()->warnings();
     if (warnings.empty()) GTEST_SKIP() << "this driver does not mind a variable without a value";
-    EXPECT_THAT(warnings, HasSubstr("t.comp:5"));
+    EXPECT_THAT(warnings, HasSubstr("t.comp:6"));
 }
 
 TEST_P(ProgramTest, MovedFromIsEmpty) {
