@@ -53,52 +53,49 @@ vec3 transmittanceToLight(uint light, vec3 position, LightSample incoming) {
 #endif
 }
 
-// Light from a point, or from a disc or ball that acts as one.
-vec3 lightOfPoint(uint light, LitPoint point, vec2 u, float specularShare, float environmentLight, inout EnvironmentVisibility seen) {
-    LightSample incoming = sampleLight(light, point.position, u);
-    float cosine = dot(point.normal, incoming.direction);
-    // An opaque surface is not lit from the side that is not seen, whatever its shading normal says.
-    if (!(cosine > 0.0) || !(dot(point.geometricNormal, incoming.direction) > 0.0)) return vec3(0.0);
-    float power = max(incoming.illuminance.r, max(incoming.illuminance.g, incoming.illuminance.b));
-    if (!(power > 0.0)) return vec3(0.0);
-    vec3 arriving = vec3(shadowVisibility(light, point.position, point.geometricNormal, u));
-    if (arriving.r > 0.0) arriving *= transmittanceToLight(light, point.position, incoming);
-    BrdfValue value = evaluateBrdf(point.brdf, point.normal, point.toEye, incoming.direction);
-    if (environmentLight > 0.0) {
-        vec3 halfway = normalize(point.toEye + incoming.direction + 1e-4 * point.normal);
-        float vote = power * cosine * ggxDistribution(max(point.brdf.alpha, kBlurAlpha), point.normal, halfway);
-        seen.seen += vote * arriving;
-        seen.weight += vote;
-    }
-    return arriving * incoming.illuminance * cosine * (value.diffuse + specularShare * value.specular);
-}
-
-// A rectangle: irradiance in closed form, samples for the lobe and for how Fresnel and media weigh its parts.
-vec3 lightOfRect(uint light, LitPoint point, vec2 u) {
+// Light of one lamp. From a point (or what stands for one) it is that point's; a rectangle in a frame of its own has its
+// irradiance in closed form, and samples for the lobe and for how Fresnel and media weigh its parts. One loop serves all kinds,
+// because every call of a shadow or a medium is compiled where it stands.
+vec3 lightOf(uint light, LitPoint point, vec2 u, float lightsShare, inout EnvironmentVisibility seen) {
     LightData data = lights[light];
-    float irradiance = rectIrradiance(data.position.xyz - point.position, data.axisX.xyz, data.axisY.xyz, data.direction.xyz, point.normal);
-    if (!(irradiance > 0.0)) return vec3(0.0);
-    float visibility = shadowVisibility(light, point.position, point.geometricNormal, u);
-    if (!(visibility > 0.0)) return vec3(0.0);
-    vec3 specular = vec3(0.0);
-    vec3 diffuseWeighted = vec3(0.0);
-    float weights = 0.0;
-    uint count = max(surfaceLight.rectSamples, 1u);
-    for (uint i = 0u; i < count; ++i) {
-        // The plastic-number sequence covers the rectangle evenly for every count.
-        vec2 at = fract(u + float(i) * vec2(0.7548776662, 0.5698402910));
-        LightSample incoming = sampleLight(light, point.position, at);
-        float cosine = dot(point.normal, incoming.direction);
-        if (!(cosine > 0.0) || !(dot(point.geometricNormal, incoming.direction) > 0.0)) continue;
-        BrdfValue value = evaluateBrdf(point.brdf, point.normal, point.toEye, incoming.direction);
-        vec3 transmittance = transmittanceToLight(light, point.position, incoming);
-        float weight = cosine * max(incoming.illuminance.r, max(incoming.illuminance.g, incoming.illuminance.b));
-        specular += transmittance * incoming.illuminance * cosine * value.specular;
-        diffuseWeighted += weight * transmittance * value.diffuse;
-        weights += weight;
+    bool fromEnvironment = (data.flags & kLightFromEnvironment) != 0u;
+    bool area = data.type == kLightRect && !viewConverges();
+    float irradiance = 0.0;
+    uint count = 1u;
+    if (area) {
+        irradiance = rectIrradiance(data.position.xyz - point.position, data.axisX.xyz, data.axisY.xyz, data.direction.xyz, point.normal);
+        if (!(irradiance > 0.0)) return vec3(0.0);
+        count = max(surfaceLight.rectSamples, 1u);
     }
-    vec3 diffuse = weights > 0.0 ? data.intensity.rgb * irradiance * (diffuseWeighted / weights) : vec3(0.0);
-    return visibility * (diffuse + specular / float(count));
+    float visibility = -1.0; // not looked up yet
+    vec3 specular = vec3(0.0);
+    vec3 diffuse = vec3(0.0);
+    float weights = 0.0;
+    for (uint i = 0u; i < count; ++i) {
+        // The plastic-number sequence covers a rectangle evenly for every count.
+        LightSample incoming = sampleLight(light, point.position, area ? fract(u + float(i) * vec2(0.7548776662, 0.5698402910)) : u);
+        float cosine = dot(point.normal, incoming.direction);
+        float power = max(incoming.illuminance.r, max(incoming.illuminance.g, incoming.illuminance.b));
+        // An opaque surface is not lit from the side that is not seen, whatever its shading normal says.
+        if (!(cosine > 0.0) || !(dot(point.geometricNormal, incoming.direction) > 0.0) || !(power > 0.0)) continue;
+        if (visibility < 0.0) visibility = shadowVisibility(light, point.position, point.geometricNormal, u);
+        vec3 transmittance = vec3(0.0);
+        if (visibility > 0.0) transmittance = transmittanceToLight(light, point.position, incoming);
+        BrdfValue value = evaluateBrdf(point.brdf, point.normal, point.toEye, incoming.direction);
+        vec3 arriving = transmittance * incoming.illuminance * cosine;
+        specular += arriving * value.specular;
+        diffuse += (area ? transmittance * (cosine * power) : arriving) * value.diffuse;
+        weights += cosine * power;
+        if (fromEnvironment) {
+            vec3 halfway = normalize(point.toEye + incoming.direction + 1e-4 * point.normal);
+            float vote = power * cosine * ggxDistribution(max(point.brdf.alpha, kBlurAlpha), point.normal, halfway);
+            seen.seen += vote * visibility * transmittance;
+            seen.weight += vote;
+        }
+    }
+    if (!(visibility > 0.0)) return vec3(0.0);
+    if (area) diffuse *= data.intensity.rgb * (irradiance / weights);
+    return visibility * (diffuse + (fromEnvironment ? lightsShare : 1.0) / float(count) * specular);
 }
 
 #if ENVIRONMENT
@@ -149,10 +146,9 @@ vec3 directLight(LitPoint point) {
     for (uint i = 0u; i < count; ++i) {
         uint light = clusterLight(cluster, i);
         vec2 u = pixelNoise2(point.pixel, 16u + i);
-        bool environmentLight = (lights[light].flags & kLightFromEnvironment) != 0u;
-        if (lights[light].type == kLightRect && !viewConverges()) sum += lightOfRect(light, point, u);
-        else if (environmentLight) fromEnvironment += lightOfPoint(light, point, u, lightsShare, 1.0, seen);
-        else sum += lightOfPoint(light, point, u, 1.0, 0.0, seen);
+        vec3 radiance = lightOf(light, point, u, lightsShare, seen);
+        if ((lights[light].flags & kLightFromEnvironment) != 0u) fromEnvironment += radiance;
+        else sum += radiance;
     }
 #if ENVIRONMENT
     if (lightsShare < 1.0 && (point.brdf.specular > 0.0 || point.brdf.metallic > 0.0)) {
