@@ -114,21 +114,10 @@ float shadowCompare(ShadowPoint point, ivec2 texel, float bias) {
     return held <= 0.0 || own >= held ? 1.0 : 0.0;
 }
 
-float shadowBilinear(ShadowPoint point, vec2 at, float bias) {
-    vec2 corner = floor(at - 0.5);
-    vec2 f = at - 0.5 - corner;
-    ivec2 t = ivec2(corner);
-    float low = mix(shadowCompare(point, t, bias), shadowCompare(point, t + ivec2(1, 0), bias), f.x);
-    float high = mix(shadowCompare(point, t + ivec2(0, 1), bias), shadowCompare(point, t + ivec2(1, 1), bias), f.x);
-    return mix(low, high, f.y);
-}
+/// Steps of the spiral that spreads points evenly over a disc (Vogel): a turn by the golden angle.
+const mat2 kSpiral = mat2(-0.73736888, 0.67549029, -0.67549029, -0.73736888);
 
-/// Point i of n, spread evenly over the unit disc (Vogel's spiral), turned by `turn` (0..1).
-vec2 shadowDisc(int i, int n, float turn) {
-    float radius = sqrt((float(i) + 0.5) / float(n));
-    float angle = 2.39996323 * float(i) + 6.28318531 * turn;
-    return radius * vec2(cos(angle), sin(angle));
-}
+vec2 shadowSpiralStart(float turn) { return vec2(cos(6.28318531 * turn), sin(6.28318531 * turn)); }
 
 float shadowSurfaceBias(ShadowPoint point) {
     return kSurfaceBiasTexels * point.oneTexel + kSurfaceBiasOfSlope * (abs(point.gradient.x) + abs(point.gradient.y));
@@ -167,49 +156,54 @@ vec3 shadowOntoPlane(uint light, vec3 at, vec3 position, vec3 normal, bool hasPl
     return at + ray * (dot(position - at, plane) / along);
 }
 
+/// Depth that a point's own plane spans, over a texel's width: for lookups at texel centres near the point.
+float shadowSlope(uint light, vec3 position, vec3 normal) {
+    vec3 ray = lights[light].type == kLightDirectional ? lights[light].direction.xyz : position - lights[light].position.xyz;
+    float cosine = max(abs(dot(ray, normal)) / max(length(ray), 1e-30), 1.0 / kSteepestSlope);
+    return sqrt(max(0.0, 1.0 - cosine * cosine)) / cosine;
+}
+
+/// One loop over all lookups, and little code in it: loops that are unrolled, and calls that are repeated, take software drivers
+/// seconds to compile.
 float shadowSoft(uint light, ShadowPoint centre, vec3 position, vec3 normal, bool hasPlane, int taps, int searchTaps, vec2 u) {
     vec3 x, y;
     bool square;
     shadowLightExtent(light, position, x, y, square);
     float reach = shadowDistance(centre.depth, centre.perspective, centre.range);
-    float sum = 0.0;
-    float found = 0.0;
+    // Three quarters of a texel of the plane's slope: lookups are at the texel's centre, not at the point.
+    float biasTexels = hasPlane ? kSurfaceBiasTexels + 0.75 * shadowSlope(light, position, normal) : -kMediumBiasTexels;
+    float sum = 0.0;   // of where casters are, as parts of the way from the light
+    float found = 0.0; // casters
+    float lit = 0.0;
     float part = kNearestBlocker;
-    // The first round looks for casters anywhere on the way, the second looks along the ways past them.
-    for (int round = 0; round < 2; ++round) {
-        int n = round == 0 ? searchTaps : taps;
-        float lit = 0.0;
-        for (int i = 0; i < n; ++i) {
-            vec2 disc = square ? 2.0 * fract(u + float(i + 1) * vec2(0.75487767, 0.56984029)) - 1.0 : shadowDisc(i, n, round == 0 ? u.x : u.y);
-            vec3 at = shadowOnWay(light, position, x * disc.x + y * disc.y, part, reach);
-            vec3 onPlane = shadowOntoPlane(light, at, position, normal, hasPlane);
-            int index = shadowViewOf(light, onPlane);
-            ShadowPoint point;
-            if (index < 0 || !shadowProject(index, onPlane, point)) {
-                lit += 1.0;
-                continue;
-            }
-            // Half a texel of the plane's slope: the lookup is at the texel's centre, not at the point.
-            float slope = 0.0;
-            if (hasPlane) {
-                vec3 ray = lights[light].type == kLightDirectional ? lights[light].direction.xyz : normalize(onPlane - lights[light].position.xyz);
-                float cosine = max(abs(dot(ray, normal)), 1.0 / kSteepestSlope);
-                slope = sqrt(max(0.0, 1.0 - cosine * cosine)) / cosine;
-            }
-            float bias = point.oneTexel * (hasPlane ? kSurfaceBiasTexels + 0.75 * slope : -kMediumBiasTexels);
+    vec2 spiral = shadowSpiralStart(u.x);
+    // First look for casters anywhere on the way, then along the ways past where they are on average.
+    for (int i = 0; i < searchTaps + taps; ++i) {
+        if (i == searchTaps) {
+            if (found == 0.0) return 1.0;
+            part = clamp(sum / found, 0.05, 1.0);
+            spiral = shadowSpiralStart(u.y);
+        }
+        bool searching = i < searchTaps;
+        float along = searching ? (float(i) + 0.5) / float(searchTaps) : (float(i - searchTaps) + 0.5) / float(taps);
+        vec2 onLight = square ? 2.0 * fract(u + float(i + 1) * vec2(0.75487767, 0.56984029)) - 1.0 : sqrt(along) * spiral;
+        spiral = kSpiral * spiral;
+        vec3 at = shadowOnWay(light, position, x * onLight.x + y * onLight.y, part, reach);
+        vec3 onPlane = shadowOntoPlane(light, at, position, normal, hasPlane);
+        int index = shadowViewOf(light, onPlane);
+        ShadowPoint point;
+        bool free = index < 0 || !shadowProject(index, onPlane, point);
+        if (!free) {
             float held = shadowFetch(point, ivec2(point.texel));
-            if (held <= 0.0 || point.depth + bias >= held) {
-                lit += 1.0;
-            } else if (round == 0) {
+            free = held <= 0.0 || point.depth + biasTexels * point.oneTexel >= held;
+            if (!free && searching) {
                 sum += shadowDistance(held, point.perspective, point.range) / max(shadowDistance(point.depth, point.perspective, point.range), 1e-30);
                 found += 1.0;
             }
         }
-        if (round == 1) return lit / float(n);
-        if (found == 0.0) return 1.0;
-        part = clamp(sum / found, 0.05, 1.0);
+        if (free && !searching) lit += 1.0;
     }
-    return 1.0;
+    return lit / float(taps);
 }
 
 /// 0..1: the part of `light` that `position` (render space) sees past opaque surfaces. `offsetNormal`: the geometric normal of
@@ -221,16 +215,30 @@ float shadowVisibility(uint light, vec3 position, vec3 offsetNormal, vec2 u) {
     if (index < 0 || !shadowProject(index, position, point)) return 1.0;
     bool onSurface = dot(offsetNormal, offsetNormal) > 0.0;
     if (onSurface) shadowPlane(index, position, offsetNormal, point);
-    if ((view.flags & kViewConverge) != 0u)
-        return shadowCompare(point, ivec2(floor(point.texel)), onSurface ? shadowSurfaceBias(point) : 0.0);
-    int taps = shadowViews[index].taps;
+    bool converge = viewConverges();
     int searchTaps = shadowViews[index].searchTaps;
-    if (searchTaps > 0) return shadowSoft(light, point, position, offsetNormal, onSurface, taps, searchTaps, u);
-    if (!onSurface) return shadowBilinear(point, point.texel, -kMediumBiasTexels * point.oneTexel);
+    if (!converge && searchTaps > 0) return shadowSoft(light, point, position, offsetNormal, onSurface, shadowViews[index].taps, searchTaps, u);
+    float bias = onSurface ? shadowSurfaceBias(point) : (converge ? 0.0 : -kMediumBiasTexels * point.oneTexel);
+    // Averaged frames: the texel that the point falls into. Else bilinear comparisons, four texels each, around it.
+    int taps = onSurface ? shadowViews[index].taps : 1;
+    int lookups = converge ? 1 : 4 * taps;
     float lit = 0.0;
-    for (int i = 0; i < taps; ++i)
-        lit += shadowBilinear(point, point.texel + (taps > 1 ? kSmallKernelTexels * shadowDisc(i, taps, u.x) : vec2(0.0)), shadowSurfaceBias(point));
-    return lit / float(taps);
+    float all = 0.0;
+    vec2 spiral = shadowSpiralStart(u.x);
+    for (int i = 0; i < lookups; ++i) {
+        int tap = i >> 2;
+        if (i > 0 && (i & 3) == 0) spiral = kSpiral * spiral;
+        vec2 at = point.texel + (taps > 1 ? kSmallKernelTexels * sqrt((float(tap) + 0.5) / float(taps)) * spiral : vec2(0.0));
+        ivec2 corner = ivec2(i & 1, (i >> 1) & 1);
+        vec2 low = floor(at - 0.5);
+        vec2 f = at - 0.5 - low;
+        vec2 weights = mix(1.0 - f, f, vec2(corner));
+        ivec2 texel = converge ? ivec2(floor(point.texel)) : ivec2(low) + corner;
+        float weight = converge ? 1.0 : weights.x * weights.y;
+        lit += weight * shadowCompare(point, texel, bias);
+        all += weight;
+    }
+    return lit / all; // exactly 0 and 1 where all lookups agree
 }
 
 #endif
