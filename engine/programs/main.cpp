@@ -67,11 +67,12 @@ int run(int argc, char** argv) {
     program.footer(kExamples);
     program.get_formatter()->column_width(34);
     GlobalOptions options;
-    program.add_flag("-q,--quiet", options.quiet, "Say nothing but warnings and errors");
     Run chosen;
     addCaptureCommand(program, chosen);
     addGraphCommand(program, chosen);
     addInfoCommand(program, chosen);
+    for (CLI::App* place : program.get_subcommands({})) place->add_flag("-q,--quiet", options.quiet, "Say nothing but warnings and errors");
+    program.add_flag("-q,--quiet", options.quiet, "Say nothing but warnings and errors");
 
     if (argc == 1) {
         std::fputs(program.help().c_str(), stderr);
