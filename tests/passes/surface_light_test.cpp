@@ -1,4 +1,4 @@
-// Light on surfaces, from the scene to the images of LE and LSE, in vacuum: against closed forms and double precision.
+// Light on surfaces, from the scene to the images of LE, LSE and (behind blended surfaces) LVE: against closed forms and double precision.
 
 #include <cmath>
 #include <optional>
@@ -9,9 +9,12 @@
 #include "gl/gl_fixture.h"
 #include "gl/shader_library.h"
 #include "renderer/blend_pass.h"
+#include "renderer/composite_pass.h"
 #include "renderer/deferred_lighting_pass.h"
 #include "renderer/gbuffer_pass.h"
 #include "renderer/light_system.h"
+#include "renderer/media_system.h"
+#include "renderer/medium_march_pass.h"
 #include "renderer/view.h"
 
 namespace tyndall::test {
@@ -59,7 +62,7 @@ struct Maker {
     }
     void touch() {
         SceneVersions& v = scene.versions;
-        v.structure = v.transforms = v.meshes = v.materials = v.textures = v.lights = v.environment = nextVersion();
+        v.structure = v.transforms = v.meshes = v.materials = v.textures = v.lights = v.media = v.environment = nextVersion();
     }
 };
 
@@ -71,7 +74,7 @@ struct Options {
 };
 
 struct Lit {
-    Image emission, direct;
+    Image emission, direct, inScatter; // inScatter: only with media
     std::string emissionStatus, directStatus, blendStatus;
 };
 
@@ -85,6 +88,8 @@ protected:
         surfaces_.emplace(*executor_);
         environment_.emplace(*executor_);
         blended_.emplace(*executor_);
+        media_.emplace(*executor_);
+        media_->registerSettings(registry_);
         lights_.emplace();
         lights_->registerSettings(registry_);
         registry_.add({gbufferSettings(), &gbufferSettings_});
@@ -96,6 +101,7 @@ protected:
     }
     void TearDown() override {
         lights_.reset();
+        media_.reset();
         blended_.reset();
         environment_.reset();
         surfaces_.reset();
@@ -126,25 +132,35 @@ protected:
         expectDone(surfaces_->update(scene, dvec3(0)));
         expectDone(environment_->update(scene));
         expectDone(blended_->update(*surfaces_, view));
+        expectDone(media_->update(scene, dvec3(0)));
         fg::FrameGraph& graph = executor_->beginFrame();
         lights_->update({&scene, dvec3(0), surfaces_->bounds(), &view});
         SurfaceLightInputs inputs;
         inputs.view = view;
         inputs.gbuffer = addGBufferPass(graph, *surfaces_, view, gbufferSettings_);
+        const Bounds bounds = surfaces_->bounds();
+        const MediaFrame media = media_->beginFrame(graph, {&view, std::span(&bounds, 1), lights_->lights(), false});
+        inputs.media = media.resources;
         inputs.lights = lights_->addPasses(graph, *surfaces_, view);
         inputs.environment = &*environment_;
         inputs.hasSurfaces = !surfaces_->items().empty();
         inputs.terms = options.terms;
         inputs.settings = settings_;
         const SurfaceLight light = addDeferredLightingPass(graph, inputs);
+        const MediumMarch march = addMediumMarchPass(graph, media, {view, inputs.gbuffer.depth, inputs.lights, true, true});
         TermImages images;
-        if (!graph.isAbsent(light.emission)) images.add(bit(Term::LE), light.emission);
-        if (!graph.isAbsent(light.direct)) images.add(bit(Term::LSE), light.direct);
-        images = addBlendPass(graph, *blended_, {view, inputs.gbuffer.depth, {}, inputs.lights, {}, inputs.environment, settings_}, images);
+        if (!graph.isAbsent(light.emission))
+            images.add(bit(Term::LE), addCompositePass(graph, "composite.LE", "term.LE", light.emission, march.transmittance, march.emission));
+        if (!graph.isAbsent(light.direct))
+            images.add(bit(Term::LSE), addCompositePass(graph, "composite.LSE", "term.LSE", light.direct, march.transmittance));
+        if (march.inScatter && !graph.isAbsent(march.inScatter)) images.add(bit(Term::LVE), march.inScatter);
+        images = addBlendPass(graph, *blended_, {view, inputs.gbuffer.depth, march.transmittance, inputs.lights, inputs.media,
+                                                 inputs.environment, settings_}, images);
         for (uint32_t i = 0; i < images.count; ++i) graph.markOutput(images.images[i].image);
         expectDone(executor_->execute());
         if (const fg::TextureHandle image = images.find(Term::LE)) lit.emission = executor_->readImage(image);
         if (const fg::TextureHandle image = images.find(Term::LSE)) lit.direct = executor_->readImage(image);
+        if (const fg::TextureHandle image = images.find(Term::LVE)) lit.inScatter = executor_->readImage(image);
         for (const fg::PassReport& pass : executor_->report().passes) {
             const std::string status = std::string(fg::statusName(pass.status)) + (pass.reason.empty() ? "" : ": " + std::string(pass.reason));
             if (pass.name == "lighting.emission") lit.emissionStatus = status;
@@ -189,6 +205,7 @@ protected:
     std::optional<GpuScene> surfaces_;
     std::optional<EnvironmentMap> environment_;
     std::optional<BlendList> blended_;
+    std::optional<MediaSystem> media_;
     std::optional<LightSystem> lights_;
     SettingsRegistry registry_;
     GBufferSettings gbufferSettings_{};
@@ -369,6 +386,47 @@ TEST_P(SurfaceLightTest, BlendedSurfacesAreLitLikeOthersAndHiddenByThem) {
     const Lit lit = draw(maker);
     EXPECT_NEAR(centre(lit.direct), 0.75 * 0.5 * 10 / kPi + 0.25 * 0.8 * 10 / kPi, 1e-3);
     EXPECT_EQ(centre(lit.emission), 0.0);
+}
+
+TEST_P(SurfaceLightTest, BlendedSurfacesLieAtTheirDepthInTheMedia) {
+    constexpr double kScatter = 0.05, kAbsorb = 0.1, kEmit = 0.3, kLux = 10;
+    Maker maker;
+    Material wall = lambert(0.5f);
+    wall.emissive = vec3(8);
+    maker.add(wall, 20, 0);
+    Material glass = lambert(0.8f);
+    glass.baseColor.w = 0.25f;
+    glass.alphaMode = AlphaMode::Blend;
+    glass.emissive = vec3(4);
+    maker.add(glass, 20, 4);
+    Medium fog;
+    fog.kind = MediumKind::Box; // from z = -6 to z = 6, wider than the view; the camera is at z = 10
+    fog.size = dvec3(100, 100, 12);
+    fog.scattering = vec3(float(kScatter));
+    fog.absorption = vec3(float(kAbsorb));
+    fog.emission = vec3(float(kEmit));
+    maker.scene.media.push_back(fog);
+    Node node;
+    node.medium = 0;
+    maker.scene.nodes.push_back(node);
+    Light sun;
+    sun.type = LightType::Directional;
+    sun.intensity = float(kLux);
+    sun.castsShadows = false;
+    maker.light(sun, dmat4(1)); // with the camera, along -Z
+    const Lit lit = draw(maker);
+    const double sigma = kScatter + kAbsorb, wallDepth = 6, glassDepth = 2; // metres of fog before each, for eye and light alike
+    const auto through = [&](double d) { return std::exp(-sigma * d); };
+    const auto emitted = [&](double d) { return kEmit * (1 - through(d)) / sigma; };
+    // Isotropic single scattering with light and eye on the same side: e^{-2σt} along the way.
+    const auto scattered = [&](double d) { return kScatter * kLux / (4 * kPi) * (1 - std::exp(-2 * sigma * d)) / (2 * sigma); };
+    const auto reflected = [&](double albedo, double d) { return albedo / kPi * kLux * std::exp(-2 * sigma * d); };
+    const auto blended = [](double behind, double before) { return 0.75 * behind + 0.25 * before; };
+    const double emission = blended(8 * through(wallDepth) + emitted(wallDepth), 4 * through(glassDepth) + emitted(glassDepth));
+    EXPECT_NEAR(centre(lit.emission) / emission, 1, 1e-3);
+    EXPECT_NEAR(centre(lit.direct) / blended(reflected(0.5, wallDepth), reflected(0.8, glassDepth)), 1, 1e-3);
+    ASSERT_FALSE(lit.inScatter.pixels.empty());
+    EXPECT_NEAR(centre(lit.inScatter) / blended(scattered(wallDepth), scattered(glassDepth)), 1, 3e-2); // one frame's noise
 }
 
 TEST_P(SurfaceLightTest, WhatIsNotNeededIsSkippedWithItsReason) {
