@@ -173,8 +173,10 @@ float gridSegment(uint m, LocalRay ray, float t0, float t1, out vec2 ends) {
             ends = vec2(interpolate(c, local - toEnd), interpolate(c, local + toEnd));
             density = (ends.x + 4.0 * interpolate(c, local) + ends.y) * (1.0 / 6.0);
         } else {
-            density = filteredSample(data.slot, local);
-            ends = vec2(density);
+            // Three samples: where density falls off, light does not reach it evenly, and one sample would not show it.
+            vec3 toEnd = ray.direction * (0.5 * (t1 - t0));
+            ends = vec2(filteredSample(data.slot, local - toEnd), filteredSample(data.slot, local + toEnd));
+            density = (ends.x + 4.0 * filteredSample(data.slot, local) + ends.y) * (1.0 / 6.0);
         }
     }
     return density * (t1 - t0);
