@@ -77,7 +77,7 @@ void executeShade(const ShadeData& data, fg::PassContext& context) {
     const fg::Target depth{data.common.depth, 0, 0}, emission{data.emission, 0, 0}, direct{data.direct, 0, 0};
     if (media) command.colors({emission, direct, fg::Target{data.inScatter, 0, 0}}, &depth);
     else command.colors({emission, direct}, &depth);
-    bindLights(command, data.lights);
+    bindLightLists(bindLights(command, data.lights), data.lights);
     if (data.environmentMap) bindEnvironment(command, data.environment);
     command.params(data.surfaceLight, "Surfaces");
     drawRuns(data.common, command, context);

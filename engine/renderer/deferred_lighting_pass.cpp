@@ -69,7 +69,7 @@ fg::TextureHandle addDirectPass(fg::FrameGraph& graph, const SurfaceLightInputs&
         [](const Data& data, fg::PassContext& context) {
             auto command = context.compute("lighting/deferred_lighting.comp", {{"MEDIA", data.media.count > 0}, {"ENVIRONMENT", data.environmentMap}});
             bindView(command, data.view);
-            bindLights(command, data.lights);
+            bindLightLists(bindLights(command, data.lights), data.lights);
             if (data.media.count > 0) bindMedia(command, data.media);
             if (data.environmentMap) bindEnvironment(command, data.environment);
             command.params(data.params, "Surfaces").bind("gbufferDepth", data.gbuffer.depth).bind("gbufferNormal", data.gbuffer.normal)

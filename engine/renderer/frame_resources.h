@@ -84,12 +84,17 @@ inline LightResources readLights(fg::Builder& builder, const LightResources& lig
     return read;
 }
 
-/// For shaders that include lighting/light.glsl, lighting/shadow.glsl and lighting/clusters.glsl, or some of them; `lights`
-/// from readLights(). Light-space optical depth is bound by who uses it.
+/// For shaders that include lighting/clusters.glsl, beside bindLights().
+template <typename Command>
+Command& bindLightLists(Command& command, const LightResources& lights) {
+    return lights.clusters ? command.bind("Clusters", lights.clusters) : command;
+}
+
+/// For shaders that include lighting/light.glsl and lighting/shadow.glsl; `lights` from readLights(). Light-space optical depth
+/// is bound by who uses it.
 template <typename Command>
 Command& bindLights(Command& command, const LightResources& lights) {
     command.bind("Lights", lights.lights);
-    if (lights.clusters) command.bind("Clusters", lights.clusters);
     if (lights.shadowViews) command.bind("ShadowViews", lights.shadowViews);
     if (lights.shadowAtlas) command.bind("shadowAtlas", lights.shadowAtlas);
     return command;
