@@ -210,8 +210,8 @@ TEST_F(CaptureTest, ABareModelGetsACameraAndALightAndSaysSo) {
 
 TEST_F(CaptureTest, ASharedEffectGivesTheSamePictureAsTheBuiltInOne) {
     ASSERT_EQ(capture({foggy, "-o", "plain.exr", "--size", "32x32", "--quiet"}).status, 0);
-    ASSERT_EQ(capture({foggy, "-o", "a.exr", "--size", "32x32", "--set", "tint.enabled=true", "--quiet"}).status, 0);
-    const ProcessResult shared = capture({foggy, "-o", "b.exr", "--size", "32x32", "--set", "tint.enabled=true", "--plugin", "example_tint", "--quiet"});
+    ASSERT_EQ(capture({foggy, "-o", "a.exr", "--size", "32x32", "--set", "tint.enabled=true", "--set", "tint.red=0.5", "--quiet"}).status, 0);
+    const ProcessResult shared = capture({foggy, "-o", "b.exr", "--size", "32x32", "--set", "tint.enabled=true", "--set", "tint.red=0.5", "--plugin", "example_tint", "--quiet"});
     ASSERT_EQ(shared.status, 0) << shared.err;
     EXPECT_EQ(exr("a.exr").layers[0].image.pixels, exr("b.exr").layers[0].image.pixels);
     EXPECT_NE(exr("a.exr").layers[0].image.pixels, exr("plain.exr").layers[0].image.pixels) << "the effect has an effect";
