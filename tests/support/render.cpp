@@ -78,7 +78,7 @@ Rendered TestRenderer::render(const Scene& scene, const RenderOptions& options) 
     for (const fg::PassReport& pass : renderer_->report().passes)
         rendered.passes[std::string(pass.name)] =
             std::string(fg::statusName(pass.status)) + (pass.reason.empty() ? "" : ": " + std::string(pass.reason));
-    EXPECT_EQ(context_.debugLog().highSeverityCount(), 0u) << "OpenGL reported an error";
+    EXPECT_EQ(context_.debugLog().count(gl::Severity::High), 0u) << "OpenGL reported an error";
     return rendered;
 }
 
