@@ -1,0 +1,51 @@
+#pragma once
+// The editor's window and loop: what happens, in which order, and when nothing needs to happen.
+
+#include <memory>
+
+#include "gl/window.h"
+#include "messages.h"
+#include "options.h"
+#include "session.h"
+#include "user_interface.h"
+
+namespace tyndall::editor {
+
+class App {
+public:
+    explicit App(EditorOptions options) : options_(std::move(options)) {}
+    /// Opens scene and window and runs until the window is closed or the frames of the command line are done.
+    Outcome run();
+
+private:
+    Outcome openScene();
+    Outcome openWindow();
+    Outcome loop();
+    /// Waits for something to happen, if nothing is to be done meanwhile.
+    void waitForEvents();
+    void drawInterface();
+    void drawMenu();
+    void drawFileMenu();
+    void drawEditMenu();
+    void drawSaveDialog();
+    void handleKeys();
+    void screenshot(const char* ending);
+    void copyCommandLine();
+    void updateTitle();
+    [[nodiscard]] bool done() const;
+
+    EditorOptions options_;
+    Messages messages_;
+    Scene scene_;
+    gl::Window window_; // outlives what is made in its context
+    std::unique_ptr<Renderer> renderer_;
+    std::unique_ptr<Session> session_;
+    std::unique_ptr<UserInterface> interface_;
+
+    int interfaceFrames_ = 3;  // still to draw: ImGui needs a few to settle after an event
+    bool timingsKnown_ = true; // of the last picture
+    bool quit_ = false, askToQuit_ = false, openSaveDialog_ = false;
+    std::string savePath_, title_;
+};
+
+} // namespace tyndall::editor

@@ -1,0 +1,78 @@
+#pragma once
+// One open scene and everything that the panes show and change.
+
+#include <map>
+#include <string>
+
+#include "camera_controller.h"
+#include "command.h"
+#include "live_picture.h"
+#include "messages.h"
+#include "options.h"
+#include "renderer/renderer.h"
+
+namespace tyndall::editor {
+
+class Session {
+public:
+    /// `scene` and `renderer` outlive the session. Settings of the scene file, preset and `--set` are applied in that order.
+    static Outcome open(Scene& scene, Renderer& renderer, Messages& messages, const EditorOptions& options, std::unique_ptr<Session>& session);
+
+    [[nodiscard]] Scene& scene() { return scene_; }
+    [[nodiscard]] Renderer& renderer() { return renderer_; }
+    [[nodiscard]] SettingsRegistry& settings() { return renderer_.settings(); }
+    [[nodiscard]] Messages& messages() { return messages_; }
+    [[nodiscard]] const EditorOptions& options() const { return options_; }
+    [[nodiscard]] History& history() { return history_; }
+    [[nodiscard]] LivePicture& picture() { return picture_; }
+    /// Performs an edit.
+    void edit(CommandPtr command) { history_.perform(std::move(command)); }
+
+    // --- what is looked at ---
+    int selected = kNone;            // node
+    FrameRequest request;            // size, terms, technique, resource shown; the pose is filled in by update()
+    /// Looks through a camera of the scene again.
+    void lookThrough(int cameraNode);
+    /// The free camera, which starts where the picture is seen from now.
+    CameraController& freeCamera();
+    [[nodiscard]] bool cameraIsFree() const { return free_; }
+    /// The lens in use.
+    [[nodiscard]] const Camera& lens() const;
+    /// Brings the selection, or else the scene, into the picture.
+    void frameSelection();
+
+    /// Renders if something changed; true when there is a new picture.
+    bool update();
+
+    // --- what leaves the editor; each says in the log what it did ---
+    void saveScreenshot(const std::string& path);
+    void saveExr(const std::string& path);
+    void saveScene(const std::string& path);
+    /// The `tyndall capture` line that makes the same picture.
+    [[nodiscard]] std::string captureLine() const;
+
+private:
+    Session(Scene& scene, Renderer& renderer, Messages& messages, const EditorOptions& options);
+    Outcome applyOptions();
+    Outcome assign(const std::string& assignment, const std::string& origin);
+    [[nodiscard]] int cameraNode() const { return request.cameraNode != kNone ? request.cameraNode : scene_.activeCamera; }
+    [[nodiscard]] double sceneSize() const;
+
+    Scene& scene_;
+    Renderer& renderer_;
+    Messages& messages_;
+    EditorOptions options_;
+    std::string sceneFile_;
+    History history_;
+    LivePicture picture_;
+    CameraController camera_;
+    bool free_ = false;
+    std::optional<double> yfov_;                 // of --pose
+    std::map<std::string, std::string> settingsOfFile_; // key → text after the scene's own settings
+    std::string giOfFile_ = "auto";
+};
+
+/// The text as one word of a shell's command line.
+std::string shellWord(const std::string& text);
+
+} // namespace tyndall::editor

@@ -1,0 +1,30 @@
+#pragma once
+// Dear ImGui's life: context, look, font, back ends, and where the layout is kept.
+
+#include <string>
+
+#include "core/math.h"
+#include "gl/window.h"
+
+namespace tyndall::editor {
+
+class UserInterface {
+public:
+    /// `keepLayout`: read it from and write it to layoutFile(). The window outlives this.
+    UserInterface(gl::Window& window, bool keepLayout);
+    ~UserInterface();
+    UserInterface(const UserInterface&) = delete;
+    UserInterface& operator=(const UserInterface&) = delete;
+
+    void beginFrame();
+    /// Draws over a cleared window of this many pixels.
+    void endFrame(ivec2 framebufferSize);
+
+private:
+    std::string layoutFile_; // ImGui keeps a pointer to it
+};
+
+/// $XDG_CONFIG_HOME/tyndall/imgui.ini, else ~/.config/tyndall/imgui.ini; the folder is made. Empty where there is no home.
+std::string layoutFile();
+
+} // namespace tyndall::editor
