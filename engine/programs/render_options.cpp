@@ -1,6 +1,7 @@
 #include "programs/render_options.h"
 
 #include <charconv>
+#include <cmath>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -49,6 +50,8 @@ void addRenderOptions(CLI::App& command, RenderOptions& options) {
     command.add_option("--plugin", options.plugins, "A shared-library plugin, by name or file, repeatable")
         ->type_name("PLUGIN")->allow_extra_args(false);
     command.add_option("--camera", options.camera, "The camera to look through, by node name (the scene's own)")->type_name("NAME");
+    command.add_option("--pose", options.pose, "Put the camera there instead: x,y,z,qx,qy,qz,qw in metres and as a quaternion, perhaps ,yfov in radians")
+        ->type_name("NUMBERS")->allow_extra_args(false);
     command.add_option("--time", options.time, "Where the scene's clock starts (0)")->type_name("SECONDS");
     command.add_option("--seed", options.seed, "Seed of everything random (0)")->type_name("N");
 }
@@ -59,6 +62,39 @@ Result<void> parseSize(const std::string& text, int& width, int& height) {
         parseSide(std::string_view(text).substr(middle + 1), height))
         return {};
     return Error{fmt::format("--size {}: it takes WIDTHxHEIGHT, each 1 to {}, such as 1280x720", text, kLargestSide)};
+}
+
+Result<PoseOption> parsePose(const std::string& text) {
+    std::vector<double> numbers;
+    const Error wrong{fmt::format("--pose {}: it takes x,y,z,qx,qy,qz,qw (metres and a quaternion), and perhaps ,yfov in radians", text)};
+    for (const char *at = text.data(), *end = at + text.size(); ; ++at) {
+        double number = 0;
+        const auto [next, error] = std::from_chars(at, end, number);
+        if (error != std::errc() || !std::isfinite(number)) return wrong;
+        numbers.push_back(number);
+        at = next;
+        if (at == end) break;
+        if (*at != ',') return wrong;
+    }
+    if (numbers.size() != 7 && numbers.size() != 8) return wrong;
+    PoseOption pose;
+    pose.position = {numbers[0], numbers[1], numbers[2]};
+    pose.rotation = dquat(numbers[6], numbers[3], numbers[4], numbers[5]);
+    const double length = glm::length(pose.rotation);
+    if (!(length > 1e-6)) return Error{fmt::format("--pose {}: its quaternion is zero; 0,0,0,1 does not turn the camera", text)};
+    // One that is unit but for rounding stays as it is: the picture is then the same to the last bit.
+    if (std::abs(length - 1) > 1e-12) pose.rotation /= length;
+    if (numbers.size() == 8) {
+        if (!(numbers[7] > 0 && numbers[7] < kPi)) return Error{fmt::format("--pose {}: the last number, yfov, must lie between 0 and pi radians", text)};
+        pose.yfov = numbers[7];
+    }
+    return pose;
+}
+
+std::string poseText(const PoseOption& pose) {
+    const dquat& q = pose.rotation;
+    std::string text = fmt::format("{},{},{},{},{},{},{}", pose.position.x, pose.position.y, pose.position.z, q.x, q.y, q.z, q.w);
+    return pose.yfov ? fmt::format("{},{}", text, *pose.yfov) : text;
 }
 
 Result<RenderPlan> understand(const RenderOptions& options) {
@@ -76,6 +112,11 @@ Result<RenderPlan> understand(const RenderOptions& options) {
         const Result<Quality> quality = parseQuality(options.quality);
         if (!quality.ok()) return Error{"--quality: " + quality.message()};
         plan.quality = *quality;
+    }
+    if (!options.pose.empty()) {
+        Result<PoseOption> pose = parsePose(options.pose);
+        if (!pose.ok()) return pose.error();
+        plan.pose = *pose;
     }
     if (options.device < -1) return Error{fmt::format("--device {}: devices are numbered from 0; 'tyndall info' lists them", options.device)};
     for (const std::string& name : options.plugins) {

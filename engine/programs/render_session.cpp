@@ -26,6 +26,16 @@ Result<int> findCamera(const Scene& scene, const std::string& name) {
                              !nearest.empty() ? "did you mean '" + nearest + "'?" : known.empty() ? "it has none at all" : "it has " + known)};
 }
 
+/// The lens of that node's camera at another place.
+CameraPose posedCamera(const Scene& scene, int node, const PoseOption& pose) {
+    CameraPose result;
+    result.camera = scene.cameras.at(size_t(scene.nodes.at(size_t(node)).camera));
+    if (pose.yfov) result.camera.yfov = *pose.yfov;
+    result.worldFromCamera = glm::mat4_cast(pose.rotation);
+    result.worldFromCamera[3] = dvec4(pose.position, 1);
+    return result;
+}
+
 } // namespace
 
 Outcome RenderSession::loadSceneFile(const RenderOptions& options, ProgressStyle style, CpuProfiler* profiler) {
@@ -105,6 +115,10 @@ Outcome RenderSession::open(const RenderOptions& options, ProgressStyle progress
         request.cameraNode = *node;
     } else if (opened->scene_.activeCamera == kNone) {
         return wrongInput(fmt::format("'{}' has no camera: add a node with a \"camera\" and name it under \"camera\"", options.scene));
+    }
+    if (plan->pose) {
+        const int node = request.cameraNode != kNone ? request.cameraNode : opened->scene_.activeCamera;
+        request.pose = posedCamera(opened->scene_, node, *plan->pose);
     }
     if (Outcome done = opened->startRenderer(options, *plan, profiler); !done.ok()) return done;
     if (Outcome done = opened->applySettings(options, *plan); !done.ok()) return done;
