@@ -81,6 +81,10 @@ Outcome App::openWindow() {
     renderer_ = std::move(*renderer);
     if (Outcome opened = Session::open(scene_, *renderer_, messages_, options_, session_); !opened.ok()) return opened;
 
+    // A processor that draws is slow: moving about matters more than pixels. A screenshot of so many frames has them all.
+    const std::string& driver = window_.context().capabilities().renderer;
+    if (options_.frames == 0 && (driver.find("llvmpipe") != std::string::npos || driver.find("softpipe") != std::string::npos)) session_->reduction = 2;
+
     listen(window_.handle(), &eventArrived);
     interface_ = std::make_unique<UserInterface>(window_, !options_.hidden);
     savePath_ = fs::path(options_.render.scene).filename().replace_extension("").replace_extension("").string() + "-edited.scene.json";
@@ -100,6 +104,7 @@ Outcome App::loop() {
         if (renderer_->reloadShaders()) session_->picture().invalidate();
         if (options_.frames > 0) session_->picture().invalidate(); // so many frames were asked for
         drawInterface();
+        if (beforeFirstPicture_ > 0 && --beforeFirstPicture_ > 0) continue; // the pane's size is only known once the interface has settled
         if (session_->update()) {
             interfaceFrames_ = std::max(interfaceFrames_, 1); // the new picture is shown by the next
             timingsKnown_ = false;

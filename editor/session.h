@@ -31,6 +31,7 @@ public:
     // --- what is looked at ---
     int selected = kNone;            // node
     FrameRequest request;            // size, terms, technique, resource shown; the pose is filled in by update()
+    int reduction = 1;               // the picture has this part of the pane's pixels along each side
     /// Looks through a camera of the scene again.
     void lookThrough(int cameraNode);
     /// The free camera, which starts where the picture is seen from now.

@@ -76,9 +76,9 @@ void drawSceneTree(Session& session) {
     ImGui::SetNextItemWidth(-1);
     ImGui::InputTextWithHint("##filter", "find by name or kind", &filter);
     if (!ImGui::BeginTable("nodes", 3, ImGuiTableFlags_ScrollY | ImGuiTableFlags_RowBg)) return;
-    ImGui::TableSetupColumn("visible", ImGuiTableColumnFlags_WidthFixed);
+    ImGui::TableSetupColumn("visible", ImGuiTableColumnFlags_WidthFixed, ImGui::GetFrameHeight());
     ImGui::TableSetupColumn("name", ImGuiTableColumnFlags_WidthStretch);
-    ImGui::TableSetupColumn("kind", ImGuiTableColumnFlags_WidthFixed);
+    ImGui::TableSetupColumn("kind", ImGuiTableColumnFlags_WidthFixed, ImGui::CalcTextSize("medium").x);
     Tree(session, filter).draw();
     ImGui::EndTable();
 }

@@ -28,10 +28,25 @@ std::string helpText(const SettingDesc& field) {
     return help + "\nDefault: " + defaultText(field);
 }
 
-/// "media" of "media.march.steps".
-std::string roomOf(const SettingDesc& field) {
-    const std::string key = field.key;
-    return key.substr(0, key.find('.'));
+/// Settings whose keys begin with the same word, whoever registered them.
+struct Room {
+    std::string title; // "Media" of "media.march.steps"
+    std::vector<std::pair<const SettingDesc*, const void*>> fields;
+};
+
+/// In the order in which their first settings were registered.
+std::vector<Room> roomsOf(const SettingsRegistry& settings, const std::string& filter) {
+    std::vector<Room> rooms;
+    for (const SettingsGroup& group : settings.groups())
+        for (const SettingDesc& field : group.fields) {
+            if (!contains(field.key, filter) && !contains(field.name, filter)) continue;
+            std::string title(std::string_view(field.key).substr(0, std::string_view(field.key).find('.')));
+            title[0] = char(std::toupper(static_cast<unsigned char>(title[0])));
+            auto room = std::find_if(rooms.begin(), rooms.end(), [&](const Room& known) { return known.title == title; });
+            if (room == rooms.end()) room = rooms.insert(room, {title, {}});
+            room->fields.emplace_back(&field, group.values);
+        }
+    return rooms;
 }
 
 void drawSetting(Session& session, const SettingDesc& field, const void* values) {
@@ -85,29 +100,13 @@ void drawSettings(Session& session) {
     drawPresets(session);
     ImGui::SetNextItemWidth(-1);
     ImGui::InputTextWithHint("##filter", "find a setting", &filter);
-    std::string room;
-    bool open = false;
-    const auto close = [&open] {
-        if (open) ImGui::EndTable();
-        open = false;
-    };
-    for (const SettingsGroup& group : session.settings().groups())
-        for (const SettingDesc& field : group.fields) {
-            if (!contains(field.key, filter) && !contains(field.name, filter)) continue;
-            if (roomOf(field) != room) {
-                close();
-                room = roomOf(field);
-                std::string title = room;
-                std::replace(title.begin(), title.begin() + 1, title[0], char(std::toupper(static_cast<unsigned char>(title[0]))));
-                ImGui::PushID(field.key);
-                if (!filter.empty()) ImGui::SetNextItemOpen(true);
-                if (ImGui::CollapsingHeader(title.c_str(), ImGuiTreeNodeFlags_DefaultOpen))
-                    open = ImGui::BeginTable("fields", 2, ImGuiTableFlags_SizingStretchSame);
-                ImGui::PopID();
-            }
-            if (open) drawSetting(session, field, group.values);
-        }
-    close();
+    for (const Room& room : roomsOf(session.settings(), filter)) {
+        if (!filter.empty()) ImGui::SetNextItemOpen(true);
+        if (!ImGui::CollapsingHeader(room.title.c_str(), ImGuiTreeNodeFlags_DefaultOpen)) continue;
+        if (!ImGui::BeginTable(room.title.c_str(), 2, ImGuiTableFlags_SizingStretchSame)) continue;
+        for (const auto& [field, values] : room.fields) drawSetting(session, *field, values);
+        ImGui::EndTable();
+    }
 }
 
 } // namespace tyndall::editor

@@ -70,7 +70,7 @@ void drawTechniques(Session& session) {
     coloredText(kGrey, plan.why);
     ImGui::PopTextWrapPos();
     if (!ImGui::BeginTable("claims", 2, ImGuiTableFlags_RowBg | ImGuiTableFlags_BordersInnerV)) return;
-    ImGui::TableSetupColumn("term", ImGuiTableColumnFlags_WidthFixed);
+    ImGui::TableSetupColumn("term", ImGuiTableColumnFlags_WidthFixed, ImGui::GetFrameHeight() + ImGui::CalcTextSize("LXSSE  ").x);
     ImGui::TableSetupColumn("computed by", ImGuiTableColumnFlags_WidthStretch);
     ImGui::TableHeadersRow();
     for (uint32_t term = 0; term < kTermCount; ++term) drawClaim(session, plan, Term(term));

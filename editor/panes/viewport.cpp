@@ -47,6 +47,14 @@ void drawToolbar(Session& session) {
     ImGui::Checkbox("Converge", &session.request.converge);
     tooltip("Average frames with other samples until edges and noise are gone, then stop; like 'tyndall capture --converge'.");
     ImGui::SameLine();
+    if (!session.options().fixedSize) {
+        static constexpr const char* kResolutions[] = {"all pixels", "1/2", "1/4"};
+        int index = session.reduction == 1 ? 0 : session.reduction == 2 ? 1 : 2;
+        ImGui::SetNextItemWidth(ImGui::GetFontSize() * 6);
+        if (ImGui::Combo("##resolution", &index, kResolutions, 3)) session.reduction = 1 << index;
+        tooltip("Pixels of the picture along each side, as a part of what the pane has: fewer are faster.");
+        ImGui::SameLine();
+    }
     float ev100 = session.scene().ev100;
     ImGui::SetNextItemWidth(ImGui::GetFontSize() * 6);
     if (ImGui::DragFloat("##ev", &ev100, 0.02f, -20, 30, "EV %.2f")) session.edit(changeExposure(session.scene(), ev100));
@@ -115,8 +123,8 @@ void drawViewport(Session& session) {
     const ImVec2 room = ImGui::GetContentRegionAvail(), corner = ImGui::GetCursorScreenPos();
     const ImVec2 pixels = ImGui::GetIO().DisplayFramebufferScale;
     if (!session.options().fixedSize) {
-        session.request.width = std::max(int(room.x * pixels.x), kSmallestSide);
-        session.request.height = std::max(int(room.y * pixels.y), kSmallestSide);
+        session.request.width = std::max(int(room.x * pixels.x) / session.reduction, kSmallestSide);
+        session.request.height = std::max(int(room.y * pixels.y) / session.reduction, kSmallestSide);
     }
     if (room.x < 1 || room.y < 1) return;
     const LivePicture& picture = session.picture();
@@ -128,6 +136,11 @@ void drawViewport(Session& session) {
         const ImVec2 at(std::floor(corner.x + 0.5f * (room.x - size.x)), std::floor(corner.y + 0.5f * (room.y - size.y)));
         const auto texture = reinterpret_cast<ImTextureID>(uintptr_t(picture.textureName()));
         ImGui::GetWindowDrawList()->AddImage(texture, at, {at.x + size.x, at.y + size.y}, {0, 1}, {1, 0}); // GL's first row is the lowest
+    }
+    if (picture.textureName() == 0) {
+        ImGui::SetCursorScreenPos({corner.x + ImGui::GetFontSize(), corner.y + ImGui::GetFontSize()});
+        coloredText(kGrey, "Rendering the first picture: shaders are compiled now, which may take a while.");
+        ImGui::SetCursorScreenPos(corner);
     }
     ImGui::InvisibleButton("picture", room, ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonRight | ImGuiButtonFlags_MouseButtonMiddle);
     moveCamera(session, room.y);
