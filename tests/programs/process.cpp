@@ -73,7 +73,8 @@ ProcessResult run(const std::vector<std::string>& arguments, const ProcessOption
         return result;
     }
     const std::vector<char*> argv = pointers(arguments);
-    const std::vector<char*> envp = pointers(options.environment.value_or(std::vector<std::string>()));
+    const std::vector<std::string> environment = options.environment.value_or(std::vector<std::string>()); // the pointers are into it
+    const std::vector<char*> envp = pointers(environment);
     const std::string folder = options.folder.string();
     const Clock::time_point start = Clock::now();
     const pid_t process = ::fork();
