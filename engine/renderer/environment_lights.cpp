@@ -4,21 +4,14 @@
 #include <cmath>
 #include <optional>
 
+#include "core/low_discrepancy.h"
+
 namespace tyndall {
 namespace {
 
 constexpr int kMostColumns = 2048; // a pixel is then a sixth of a degree, a third of the sun
 constexpr int kLeastColumns = 64;  // so that a constant or tiny image can be cut into many regions
 constexpr int kLeastRows = 32;
-
-double fraction(double x) { return x - std::floor(x); }
-
-/// 0..1 from an integer, all bits mixed (splitmix64's finaliser).
-double hashed(uint64_t x) {
-    x = (x + 0x9e3779b97f4a7c15ull) * 0xbf58476d1ce4e5b9ull;
-    x = (x ^ (x >> 27)) * 0x94d049bb133111ebull;
-    return double((x ^ (x >> 31)) >> 11) * 0x1p-53;
-}
 
 } // namespace
 
@@ -221,14 +214,10 @@ std::vector<EnvironmentLight> EnvironmentSampler::lights(int count) const {
 
 std::vector<EnvironmentLight> EnvironmentSampler::sample(int count, uint32_t frame, uint32_t seed) const {
     std::vector<EnvironmentLight> result;
-    uint64_t index = uint64_t(seed) << 20;
+    uint64_t index = (uint64_t(seed) << 20) + (uint64_t(1) << 60);
     for (const Region& region : regions(count)) {
-        // A region's points over the frames are a Weyl sequence, shifted anew for every region. Steps √29 and √22: irrational to
-        // those of all other samples of a frame (see framePoint() of light_system.cpp).
-        const double u = fraction(hashed(2 * index) + 0.38516480713450403 * frame);
-        const double v = fraction(hashed(2 * index + 1) + 0.69041575982342955 * frame);
-        ++index;
-        const EnvironmentLight light = sampleLight(region, u, v);
+        const dvec2 point = lowDiscrepancyPoint(frame, ++index); // every region has its own sequence
+        const EnvironmentLight light = sampleLight(region, point.x, point.y);
         if (light.illuminance != dvec3(0)) result.push_back(light);
     }
     return result;

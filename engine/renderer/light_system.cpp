@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "core/low_discrepancy.h"
 #include "framegraph/hash.h"
 #include "renderer/gpu_scene.h"
 
@@ -27,14 +28,9 @@ uint32_t shaderType(LightType type) {
     return gpu::kLightPoint;
 }
 
-/// The light of this frame as a low-discrepancy point of the unit square; every light has its own shift. The steps (√58 and √21)
-/// are irrational to those of sub-pixel offsets, noise, texel grids and environment samples: together they must fill the
-/// product of their squares, or averages would be biased.
+/// The light of this frame as a low-discrepancy point of the unit square: every light has its own sequence.
 dvec2 framePoint(const gpu::ViewData& view, uint32_t light) {
-    const uint64_t hash = fg::mixHash(uint64_t(view.seed) + 31, light);
-    const double x = double(hash & 0xffffffffu) * 0x1p-32 + 0.61577310586390828 * view.frameIndex;
-    const double y = double(hash >> 32) * 0x1p-32 + 0.58257569495584000 * view.frameIndex;
-    return {x - std::floor(x), y - std::floor(y)};
+    return lowDiscrepancyPoint(view.frameIndex, fg::mixHash(uint64_t(view.seed) + 31, light));
 }
 
 /// A point on the light that stands for all of it in this frame; see light.glsl for the weights.

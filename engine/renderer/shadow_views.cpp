@@ -4,6 +4,7 @@
 #include <bit>
 #include <cmath>
 
+#include "core/low_discrepancy.h"
 #include "framegraph/hash.h"
 
 namespace tyndall {
@@ -243,14 +244,10 @@ private:
     uint64_t next_ = 0;
 };
 
-/// This frame's offset of a light's texel grid, -½..½ texels. Steps √14 and √33: irrational to those of all other samples (see
-/// framePoint() of light_system.cpp).
+/// This frame's offset of a light's texel grid, -½..½ texels.
 dvec2 jitterOf(const gpu::ViewData& view, uint32_t light) {
     if ((view.flags & gpu::kViewConverge) == 0) return dvec2(0);
-    const uint64_t hash = fg::mixHash(uint64_t(view.seed) + 77, light);
-    const double x = double(hash & 0xffffffffu) * 0x1p-32 + 0.74165738677394139 * view.frameIndex;
-    const double y = double(hash >> 32) * 0x1p-32 + 0.74456264653802865 * view.frameIndex;
-    return {x - std::floor(x) - 0.5, y - std::floor(y) - 0.5};
+    return lowDiscrepancyPoint(view.frameIndex, fg::mixHash(uint64_t(view.seed) + 77, light)) - 0.5;
 }
 
 gpu::ShadowView describe(const Frustum& frustum, int count, bool soft, const ShadowSettings& settings) {

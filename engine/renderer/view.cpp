@@ -2,16 +2,11 @@
 
 #include <cmath>
 
+#include "core/low_discrepancy.h"
+#include "framegraph/hash.h"
+
 namespace tyndall {
 namespace {
-
-// The plastic-number sequence (Roberts, "The Unreasonable Effectiveness of Quasirandom Sequences", 2018): well spread for
-// every number of frames. Offset by half, so that the mean of n points tends to the centre quickly.
-dvec2 quasirandom(uint32_t index) {
-    constexpr double kA1 = 0.75487766624669276005, kA2 = 0.56984029099805326591;
-    const double x = 0.5 + kA1 * double(index), y = 0.5 + kA2 * double(index);
-    return {x - std::floor(x), y - std::floor(y)};
-}
 
 /// Reversed depth, far plane at infinity: depth = near / distance along the axis.
 dmat4 perspective(const Camera& camera, double aspect) {
@@ -64,7 +59,7 @@ ViewResources makeView(const ViewRequest& request) {
     dmat4 renderFromCamera = withoutScale(request.worldFromCamera);
     renderFromCamera[3] -= dvec4(request.renderOrigin, 0);
 
-    const dvec2 point = quasirandom(request.frameIndex + request.seed * 7919u);
+    const dvec2 point = lowDiscrepancyPoint(request.frameIndex, fg::mixHash(request.seed, 1));
     const dvec2 jitter = request.converge ? point - 0.5 : dvec2(0);
     dmat4 jitterClip(1.0);
     jitterClip[3] = dvec4(2.0 * jitter.x / request.width, 2.0 * jitter.y / request.height, 0, 1);
@@ -84,7 +79,7 @@ ViewResources makeView(const ViewRequest& request) {
     data.cameraPosition = vec4(vec3(renderFromCamera[3]), parallel ? 0.0f : float(camera.znear));
     data.cameraForward = vec4(-vec3(renderFromCamera[2]), float(request.sceneRadius));
     data.size = vec4(float(request.width), float(request.height), 1.0f / float(request.width), 1.0f / float(request.height));
-    const dvec2 frame = quasirandom(request.frameIndex * 2u + 1u + request.seed * 104729u);
+    const dvec2 frame = lowDiscrepancyPoint(request.frameIndex, fg::mixHash(request.seed, 2));
     data.jitter = vec4(vec2(jitter), vec2(frame));
     data.frameIndex = request.frameIndex;
     data.seed = request.seed;

@@ -40,7 +40,7 @@ TEST_P(Airlight, MatchesTheIntegralOnceConverged) {
     const Rendered picture = sharedRenderer().render(airlightScene(GetParam()), options);
     double mean = 0;
     for (int y = 0; y < 8; ++y)
-        for (int x = 0; x < 8; ++x) mean += double(picture.pixel(x, y, "LVE").g) / 64;
+        for (int x = 0; x < 8; ++x) mean += double(picture.pixel(x, y, "LVE").y) / 64;
     EXPECT_NEAR(mean / GetParam().radiance, 1.0, 0.003) << mean;
     std::printf("relative error %.2e\n", mean / GetParam().radiance - 1);
 }
@@ -53,7 +53,7 @@ TEST_P(Airlight, IsTheSameInMillimetresAndInKilometres) {
         const Rendered scaled = sharedRenderer().render(airlightScene(GetParam(), scale), options);
         // I grows with the square of the scale, so that I/d² stays; σ shrinks with it, so that σ·ds stays.
         for (int i = 0; i < 8; ++i)
-            EXPECT_NEAR(double(scaled.pixel(i, i, "LVE").g / metres.pixel(i, i, "LVE").g), 1.0, 1e-3) << "scale " << scale;
+            EXPECT_NEAR(double(scaled.pixel(i, i, "LVE").y / metres.pixel(i, i, "LVE").y), 1.0, 1e-3) << "scale " << scale;
     }
 }
 

@@ -74,27 +74,36 @@ TEST(Invariance, FarFromTheOriginTheSamePicture) {
     EXPECT_LE(relmse(sharedRenderer().render(far, options()).beauty, sharedRenderer().render(near, options()).beauty), 1e-3);
 }
 
-TEST(Invariance, ABoxAndAConstantGridAreTheSameMedium) {
-    const std::string box = R"(,{"name": "m", "medium": {"type": "homogeneous", "shape": "box", "size": [2, 2, 2], "scattering": [0.9, 0.7, 0.5], "absorption": [0.1, 0.1, 0.1], "anisotropy": 0.3}, "translation": [0, 1, 0]})";
-    Scene shape = testScene(1, box);
+/// The box medium of `shape` as a constant grid of n voxels an edge. Voxel centres: the cube's faces lie half a voxel outside them.
+Scene asGrid(const Scene& shape, int n) {
     Scene grid = shape;
-    constexpr int kN = 64;
     for (Medium& medium : grid.media) {
-        const double h = 2.0 / kN;
+        const double h = 2.0 / n;
         dmat4 worldFromIndex(h);
-        worldFromIndex[3] = dvec4(dvec3(-1 + h / 2), 1); // voxel centres: the cube's faces lie half a voxel outside them
+        worldFromIndex[3] = dvec4(dvec3(-1 + h / 2), 1);
         medium.kind = MediumKind::Grid;
-        medium.density = std::make_shared<BrickGrid>(makeBrickGrid(std::vector<float>(kN * kN * kN, 1.0f), ivec3(0), ivec3(kN), worldFromIndex));
+        medium.density = std::make_shared<BrickGrid>(makeBrickGrid(std::vector<float>(size_t(n) * size_t(n) * size_t(n), 1.0f), ivec3(0), ivec3(n), worldFromIndex));
         medium.version = nextVersion();
     }
     grid.versions.media = nextVersion();
+    return grid;
+}
+
+TEST(Invariance, ABoxAndAConstantGridAreTheSameMedium) {
+    const std::string box = R"(,{"name": "m", "medium": {"type": "homogeneous", "shape": "box", "size": [2, 2, 2], "scattering": [0.9, 0.7, 0.5], "absorption": [0.1, 0.1, 0.1], "anisotropy": 0.3}, "translation": [0, 1, 0]})";
+    const Scene shape = testScene(1, box);
     RenderOptions o = options(16);
     o.settings = {"media.integration=exact", "media.lightOpticalDepth=exact"};
-    const Rendered a = sharedRenderer().render(shape, o), b = sharedRenderer().render(grid, o);
-    std::printf("relmse %.2e, energy %.5f\n", relmse(b.beauty, a.beauty), mean(b.beauty) / mean(a.beauty));
-    EXPECT_LE(relmse(b.beauty, a.beauty), 1e-3);
-    EXPECT_NEAR(mean(b.beauty) / mean(a.beauty), 1, 1e-3);
-    EXPECT_NEAR(mean(b.terms.at("LVE")) / mean(a.terms.at("LVE")), 1, 1e-3);
+    const Rendered a = sharedRenderer().render(shape, o);
+    const Rendered coarse = sharedRenderer().render(asGrid(shape, 32), o), fine = sharedRenderer().render(asGrid(shape, 64), o);
+    const auto excess = [&](const Rendered& b) { return std::abs(mean(b.terms.at("LVE")) / mean(a.terms.at("LVE")) - 1); };
+    std::printf("relmse %.2e; scattered light differs by %.4f with 32 voxels, %.4f with 64\n", relmse(fine.beauty, a.beauty), excess(coarse), excess(fine));
+    EXPECT_LE(relmse(fine.beauty, a.beauty), 1e-3);
+    // A trilinear field fades over a voxel at its border, half of it outside the box: as much matter, a little more spread out.
+    // What it scatters more is of first order in the voxel: bounded by the fraction of volume in the outer half voxels
+    // (6 faces of h/2 over an edge of 2: 3/64 here), and halved with the voxel. A grid misplaced by half a voxel would not halve.
+    EXPECT_LE(excess(fine), 3.0 / 64);
+    EXPECT_NEAR(excess(fine) / excess(coarse), 0.5, 0.1);
 }
 
 bool isMediaPass(const std::string& name) { return name.rfind("media", 0) == 0; }
@@ -136,7 +145,7 @@ TEST(Skips, AMediumOutOfViewAndOffEveryLightPathIsSkippedAndOneInTheLightsPathIs
     for (const auto& [name, status] : behind.passes) skipped += isMediaPass(name) && status.rfind("skipped", 0) == 0;
     EXPECT_GT(skipped, 0);
     for (const auto& [name, status] : behind.passes)
-        if (isMediaPass(name)) EXPECT_NE(status.substr(0, 3), "ran") << name;
+        EXPECT_TRUE(!isMediaPass(name) || status.rfind("ran", 0) != 0) << name;
     // Above the picture, but between the lamp and the floor: it dims the floor.
     EXPECT_LT(mean(sharedRenderer().render(scene(-4), options()).beauty), 0.95 * mean(sharedRenderer().render(scene(-4), off).beauty));
 }

@@ -36,7 +36,7 @@ void expectIrradiance(const std::string& light, const std::function<double(dvec3
     for (int y = 0; y < kSize; ++y)
         for (int x = 0; x < kSize; ++x) {
             const double expected = kAlbedo / kPi * lux(pointUnder(x, y));
-            const double measured = double(picture.pixel(x, y).g);
+            const double measured = double(picture.pixel(x, y).y);
             const double error = expected == 0 ? (measured == 0 ? 0 : 1) : std::abs(measured / expected - 1);
             ASSERT_LE(error, kBound) << "at pixel " << x << ", " << y << ": " << measured << " nits where " << expected << " are right";
             worst = std::max(worst, error);
@@ -120,7 +120,7 @@ TEST(LightsOnLambert, LightIsLinearAndAddsUp) {
     const Image a = render(lamp), b = render(torch), both = render(lamp + "," + torch), twice = render(doubled);
     for (size_t i = 0; i < a.pixels.size(); ++i) {
         ASSERT_FLOAT_EQ(twice.pixels[i], 2 * a.pixels[i]);
-        ASSERT_NEAR(both.pixels[i], a.pixels[i] + b.pixels[i], 1e-5 * both.pixels[i] + 1e-12);
+        ASSERT_NEAR(both.pixels[i], a.pixels[i] + b.pixels[i], 1e-5f * both.pixels[i] + 1e-12f);
     }
 }
 

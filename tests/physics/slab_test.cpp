@@ -35,7 +35,7 @@ double pixelRadiance(double tau, double mu, bool transmitted) {
     options.frames = 16;
     const Rendered picture = sharedRenderer().render(scene, options);
     double mean = 0;
-    for (int i = 0; i < 16; ++i) mean += double(picture.pixel(i % 4, i / 4, "LVE").g) / 16;
+    for (int i = 0; i < 16; ++i) mean += double(picture.pixel(i % 4, i / 4, "LVE").y) / 16;
     return mean;
 }
 

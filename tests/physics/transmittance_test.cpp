@@ -58,7 +58,7 @@ TEST(Transmittance, LinearDensityHasTheMeanOfItsEnds) {
              "translation": [1.55, 1.55, {}], "rotation": [0.7071067811865476, 0, 0, 0.7071067811865476]}})", zOf(start), zOf(end));
     const Rendered picture = sharedRenderer().render(gridScene(eye, voxels, ivec3(kN), scaledAndMoved(h, dvec3(0)), 2.0), exactOptions(9));
     const double expected = std::exp(-2.0 * (end - start) * h * 0.5 * (0.05 * start + 0.05 * end));
-    EXPECT_NEAR(double(picture.centre("LE").r), expected, kBound);
+    EXPECT_NEAR(double(picture.centre("LE").x), expected, kBound);
 }
 
 TEST(Transmittance, GaussianBlobHasTheErrorFunction) {
@@ -80,7 +80,7 @@ TEST(Transmittance, GaussianBlobHasTheErrorFunction) {
         for (int x = 0; x < kPixels; ++x) {
             const double b2 = (x - 16) * (x - 16) + (y - 16) * (y - 16);
             const double tau = sigma * h * s * std::sqrt(2 * kPi) * std::exp(-b2 / (2 * s * s)) * std::erf(32.5 / (s * std::sqrt(2.0)));
-            ASSERT_NEAR(double(picture.pixel(x, y, "LE").r), std::exp(-tau), kBound) << x << ", " << y;
+            ASSERT_NEAR(double(picture.pixel(x, y, "LE").x), std::exp(-tau), kBound) << x << ", " << y;
         }
 }
 
@@ -100,9 +100,9 @@ TEST(Transmittance, HeightFogHasItsClosedForm) {
             ASSERT_GT(up, 0);
             const double tau = std::exp(-eyeHeight / scaleHeight) * scaleHeight / up; // to infinity
             const vec3 seen = picture.pixel(x, y, "LE");
-            ASSERT_NEAR(double(seen.r), std::exp(-sigma * tau), kBound);
-            ASSERT_NEAR(double(seen.g), std::exp(-0.5 * sigma * tau), kBound);
-            ASSERT_EQ(seen.b, 1.0f) << "a channel without extinction is untouched";
+            ASSERT_NEAR(double(seen.x), std::exp(-sigma * tau), kBound);
+            ASSERT_NEAR(double(seen.y), std::exp(-0.5 * sigma * tau), kBound);
+            ASSERT_EQ(seen.z, 1.0f) << "a channel without extinction is untouched";
         }
 }
 
@@ -131,7 +131,7 @@ TEST(Transmittance, OverlappingMediaMultiply) {
     };
     const Rendered a = render(box), b = render(ball), both = render(box + "," + ball);
     for (int y = 0; y < 16; ++y)
-        for (int x = 0; x < 16; ++x) ASSERT_NEAR(both.pixel(x, y, "LE").r, a.pixel(x, y, "LE").r * b.pixel(x, y, "LE").r, 2e-6f);
+        for (int x = 0; x < 16; ++x) ASSERT_NEAR(both.pixel(x, y, "LE").x, a.pixel(x, y, "LE").x * b.pixel(x, y, "LE").x, 2e-6f);
 }
 
 } // namespace
