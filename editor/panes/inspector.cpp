@@ -23,6 +23,14 @@ void label(const char* name, const std::string& help) {
     ImGui::PushID(name);
 }
 
+/// A table of names and values, in which the names take what they need.
+bool beginFields(const char* id) {
+    if (!ImGui::BeginTable(id, 2)) return false;
+    ImGui::TableSetupColumn("name", ImGuiTableColumnFlags_WidthFixed, ImGui::CalcTextSize("Absorption ").x);
+    ImGui::TableSetupColumn("value", ImGuiTableColumnFlags_WidthStretch);
+    return true;
+}
+
 bool dragPoint(const char* name, const std::string& help, dvec3& value, float speed, const char* format) {
     label(name, help);
     const bool changed = ImGui::DragScalarN("##value", ImGuiDataType_Double, glm::value_ptr(value), 3, speed, nullptr, nullptr, format);
@@ -54,7 +62,7 @@ void drawTransform(Session& session, int index) {
         tooltip("The file gives this node a matrix instead of translation, rotation and scale; it is kept as it is.");
         return;
     }
-    if (!ImGui::BeginTable("transform", 2)) return;
+    if (!beginFields("transform")) return;
     dvec3 translation = node.translation, scale = node.scale;
     dvec3 turned = glm::eulerAngles(node.rotation) * kDegrees;
     const double size = std::max({std::abs(translation.x), std::abs(translation.y), std::abs(translation.z), 1.0});
@@ -74,7 +82,7 @@ void drawLight(Session& session, int index) {
     Light light = session.scene().lights[size_t(index)];
     ImGui::Separator();
     text(kTypes[int(light.type)]);
-    if (!ImGui::BeginTable("light", 2)) return;
+    if (!beginFields("light")) return;
     bool changed = false;
     if (light.type == LightType::Rect) {
         changed |= dragColor("Radiance", "Nits that leave it, red, green and blue", light.radiance, "%.4g");
@@ -98,7 +106,7 @@ void drawMedium(Session& session, int index) {
     ImGui::Separator();
     text(kKinds[int(medium.kind)]);
     if (!medium.file.empty()) coloredText(kGrey, medium.file + (medium.gridName.empty() ? "" : ", grid '" + medium.gridName + "'"));
-    if (!ImGui::BeginTable("medium", 2)) return;
+    if (!beginFields("medium")) return;
     bool changed = dragColor("Scattering", "Per metre, red, green and blue; a grid multiplies it", medium.scattering, "%.4g");
     changed |= dragColor("Absorption", "Per metre, red, green and blue; a grid multiplies it", medium.absorption, "%.4g");
     label("Anisotropy", "Mean cosine of scattering: positive goes on forwards, negative is thrown back");
