@@ -26,7 +26,7 @@ function(tyndall_test name)
   target_compile_definitions(${name} PRIVATE TYNDALL_ASSERTS)
   set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/tests)
   if(NOT ARG_TIMEOUT)
-    set(ARG_TIMEOUT 300)
+    set(ARG_TIMEOUT 900) # software GL compiles shaders slowly on a busy machine
   endif()
   set(labels ${ARG_LABEL})
   if(ARG_SLOW)
@@ -35,5 +35,5 @@ function(tyndall_test name)
   add_test(NAME ${name} COMMAND ${name})
   set_tests_properties(${name} PROPERTIES LABELS "${labels}" TIMEOUT ${ARG_TIMEOUT}
     ENVIRONMENT "TYNDALL_SOURCE_DIR=${CMAKE_SOURCE_DIR};TYNDALL_BIN_DIR=${CMAKE_BINARY_DIR}/bin"
-    SKIP_REGULAR_EXPRESSION "\\[  SKIPPED \\] 1 test.*\n.*\\[  PASSED  \\] 0 tests")
+    SKIP_REGULAR_EXPRESSION "PASSED  .. 0 tests.*SKIPPED")
 endfunction()

@@ -55,6 +55,9 @@ Limits queryLimits(bool anisotropic) {
 }
 
 constexpr WorkaroundInfo kWorkarounds[] = {
+    {Workaround::NoAnisotropy, "no-anisotropy", "llvmpipe",
+     "Mesa 22.3's anisotropic filter loops over the footprint without a bound: Sponza's floor, seen at a grazing angle, took over 15 minutes of CPU time "
+     "at 160x90 and did not end"},
     {Workaround::FlushTimestamps, "flush-timestamps", "llvmpipe",
      "compute shaders run while they are recorded, but timestamps are taken when the draws recorded with them are "
      "rasterised: without "

@@ -39,6 +39,7 @@ struct Limits {
 /// Behaviour of a driver that the code avoids. Each has a row in the table in capabilities.cpp with driver and reason.
 enum class Workaround : uint32_t {
     FlushTimestamps = 0, // a timestamp must be flushed to be taken in its place among the commands
+    NoAnisotropy = 1,    // the anisotropic filter must not be used
 };
 struct WorkaroundInfo {
     Workaround workaround;

@@ -33,7 +33,7 @@ fg::TextureHandle addInspectPass(fg::FrameGraph& graph, fg::TextureHandle resour
                            std::clamp(settings.mip, 0, desc.mips - 1), 0, 0, 0};
         },
         [](const Data& data, fg::PassContext& context) {
-            context.compute("post/inspect.comp", {{"KIND", data.kind}}).bind("resource", data.resource).bind("display", data.display)
+            context.compute("post/inspect.comp", {{"KIND", data.kind}}).bind("shown", data.resource).bind("display", data.display)
                 .params(data.params).dispatchOver(data.display);
         }).display;
 }

@@ -5,28 +5,28 @@
 layout(local_size_x = 8, local_size_y = 8) in;
 
 #if KIND == 0
-uniform sampler2D resource;
+uniform sampler2D shown;
 #elif KIND == 1
-uniform sampler2DArray resource;
+uniform sampler2DArray shown;
 #else
-uniform sampler3D resource;
+uniform sampler3D shown;
 #endif
 layout(rgba8) uniform writeonly image2D display;
 layout(std140) uniform Params { InspectParams params; };
 
 vec4 fetch(ivec2 p) {
 #if KIND == 0
-    return texelFetch(resource, p, params.mip);
+    return texelFetch(shown, p, params.mip);
 #else
-    return texelFetch(resource, ivec3(p, params.slice), params.mip);
+    return texelFetch(shown, ivec3(p, params.slice), params.mip);
 #endif
 }
 
 void main() {
-    ivec2 pixel = ivec2(gl_GlobalInvocationID.xy), shown = imageSize(display);
-    if (any(greaterThanEqual(pixel, shown))) return;
-    ivec2 size = textureSize(resource, params.mip).xy;
-    vec4 value = fetch(min(pixel * size / shown, size - 1));
+    ivec2 pixel = ivec2(gl_GlobalInvocationID.xy), pixels = imageSize(display);
+    if (any(greaterThanEqual(pixel, pixels))) return;
+    ivec2 size = textureSize(shown, params.mip).xy;
+    vec4 value = fetch(min(pixel * size / pixels, size - 1));
     vec3 c = params.channel == 0u ? value.rgb : vec3(value[params.channel - 1u]);
     bool finite = all(lessThanEqual(abs(c), vec3(3.4e38)));
     c = finite ? clamp((c - params.minimum) / max(params.maximum - params.minimum, 1e-30), 0.0, 1.0) : vec3(1.0, 0.0, 1.0);

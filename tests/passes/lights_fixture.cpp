@@ -219,7 +219,7 @@ void LightsTest::lookOnce(SceneMaker& maker, const std::vector<Probe>& probes, c
         },
         [](const ProbePass& p, fg::PassContext& context) {
             auto command = context.compute("test/light_probe.comp");
-            bindLights(bindView(command, p.view), p.lights).bind("Probes", p.probes).bind("Results", p.results);
+            bindLightLists(bindLights(bindView(command, p.view), p.lights), p.lights).bind("Probes", p.probes).bind("Results", p.results);
             command.set("probeCount", int(p.count)).set("rectSamples", p.rectSamples).set("everyLight", p.everyLight).dispatchOver(p.count);
         });
     graph.markOutput(pass.results);

@@ -19,7 +19,7 @@ using ::testing::HasSubstr;
 
 /// Libraries that every Linux with a GL driver has, and the two of which the younger must win.
 const std::regex kFromTheSystem("(ld-linux|linux-vdso|lib(c|m|dl|rt|pthread|util|resolv|mvec)\\.so|libstdc\\+\\+|libgcc_s|libGL|libEGL|libOpenGL|libgbm|libdrm|"
-                                "libX|libxcb|libwayland|libxkbcommon).*");
+                                "libX|libxcb|libwayland|libxkbcommon|libbsd|libmd).*"); // the last two come with libX11
 
 class PackageTest : public ::testing::Test {
 public:
