@@ -103,9 +103,9 @@ double panelLux(dvec3 p) {
 TEST(LightsOnLambert, RectLightMatchesLambertsPolygonFormula) { expectIrradiance(kPanel, panelLux); }
 
 TEST(LightsOnLambert, RectLightSampledOverManyFramesTendsToTheSame) {
-    // 256 points of a quasirandom sequence on the panel: its error is far below 0.2 % where the integrand is this smooth.
+    // 512 points of a scrambled net on the panel, joined with as many sub-pixel offsets: with 256 the worst pixel is at 0.2003 %.
     RenderOptions options;
-    options.frames = 256;
+    options.frames = 512;
     // Sub-pixel jitter averages over the pixel, whose mean differs from the value at its centre by h²/24 times the Laplacian.
     expectIrradiance(kPanel, panelLux, options);
 }
