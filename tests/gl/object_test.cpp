@@ -191,7 +191,7 @@ TEST_P(ObjectTest, ASamplerIsMadeOncePerSpec) {
     EXPECT_EQ(value, GL_NEAREST);
 }
 
-TEST_P(ObjectTest, AnisotropyIsClampedToTheDriversMost) {
+TEST_P(ObjectTest, AnisotropyIsClampedToTheDriversMostAndUnusedWhereItDoesNotEnd) {
     SamplerCache cache;
     SamplerSpec spec;
     spec.anisotropy = 1e6f;
@@ -200,6 +200,10 @@ TEST_P(ObjectTest, AnisotropyIsClampedToTheDriversMost) {
         GTEST_SKIP() << "this driver has no anisotropic filter";
     GLfloat value = 0;
     glGetSamplerParameterfv(sampler, GL_TEXTURE_MAX_ANISOTROPY_EXT, &value);
+    if (context().capabilities().needs(Workaround::NoAnisotropy)) {
+        EXPECT_EQ(value, 1.0f);
+        return;
+    }
     EXPECT_EQ(value, context().capabilities().limits.anisotropy);
     EXPECT_GE(value, 2.0f);
 }
