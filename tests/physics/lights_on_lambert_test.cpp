@@ -40,7 +40,7 @@ double pixelMean(const std::function<double(dvec3)>& lux, int x, int y) {
     return sum;
 }
 
-void expectIrradiance(const std::string& light, const std::function<double(dvec3)>& lux, RenderOptions options = {}) {
+void expectIrradiance(const std::string& light, const std::function<double(dvec3)>& lux, RenderOptions options = {}, double bound = kBound) {
     options.width = options.height = kSize;
     const Rendered picture = sharedRenderer().render(sceneFromJson(planeScene(light)), options);
     double worst = 0;
@@ -49,7 +49,7 @@ void expectIrradiance(const std::string& light, const std::function<double(dvec3
             const double expected = kAlbedo / kPi * (options.frames > 1 ? pixelMean(lux, x, y) : lux(pointUnder(x, y)));
             const double measured = double(picture.pixel(x, y).y);
             const double error = expected == 0 ? (measured == 0 ? 0 : 1) : std::abs(measured / expected - 1);
-            ASSERT_LE(error, kBound) << "at pixel " << x << ", " << y << ": " << measured << " nits where " << expected << " are right";
+            ASSERT_LE(error, bound) << "at pixel " << x << ", " << y << ": " << measured << " nits where " << expected << " are right";
             worst = std::max(worst, error);
         }
     std::printf("worst relative error %.2e\n", worst);
@@ -116,7 +116,9 @@ TEST(LightsOnLambert, RectLightMatchesLambertsPolygonFormula) { expectIrradiance
 TEST(LightsOnLambert, RectLightSampledOverManyFramesTendsToTheSame) {
     RenderOptions options;
     options.frames = 256;
-    expectIrradiance(kPanel, panelLux, options);
+    // One point a frame on the panel: independent points would leave about 2 % (a panel this near varies by a third over its area, divided by
+    // the root of 256); the scrambled net leaves a quarter of a per cent, and half of one is allowed.
+    expectIrradiance(kPanel, panelLux, options, 0.005);
 }
 
 TEST(LightsOnLambert, LightIsLinearAndAddsUp) {
