@@ -87,7 +87,7 @@ struct Define {
 enum class CullMode : uint32_t { None = 0, Back = 1, Front = 2 };
 enum class BlendMode : uint32_t { Replace = 0, Premultiplied = 1, Add = 2 };
 enum class DepthMode : uint32_t { Off = 0, TestAndWrite = 1, Test = 2, TestEqual = 3 };
-enum class CompareMode : uint32_t { Greater = 0, Less = 1 }; // Greater: reversed z, the camera's; Less: shadow maps
+enum class CompareMode : uint32_t { Greater = 0, Less = 1 }; // Greater: reversed z, of cameras and shadow maps; Less: plain z
 enum class Topology : uint32_t { Triangles = 0, Lines = 1, Points = 2 };
 
 /// Fixed-function state of one raster command.
