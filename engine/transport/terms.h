@@ -1,5 +1,5 @@
 #pragma once
-// The terms of light transport: every path from a light to the eye is in exactly one (docs/techniques.md).
+// The terms of light transport: every path from a light to the eye is in exactly one.
 // Letters from light to eye: L light, S surface, V medium, X one or more earlier scatterings, E eye.
 
 #include <cstdint>
