@@ -40,6 +40,7 @@ struct MediaResources {
     fg::TextureHandle opticalDepth;     // light-space optical depth of the grids; null where no light has a volume
     fg::StaticTexture noOpticalDepth;   // bound in its place then
     uint32_t count = 0;            // media that can be seen or can shade what is seen; 0: bind nothing, include nothing
+    uint32_t kinds = 0;            // the define MEDIA_KINDS: kMediaShapes and so on in shared/medium.h
     uint32_t phaseGroups = 1;      // the define PHASE_GROUPS: 1 where one phase function is enough, else 8
 };
 

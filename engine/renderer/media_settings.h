@@ -19,6 +19,7 @@ struct MediaSettings {
     MediaIntegration integration;
     float stepScale;
     int32_t steps;
+    int32_t environmentLights;
     MarchResolution resolution;
     bool refine;
     float depthTolerance, transmittanceTolerance, refineWeight;

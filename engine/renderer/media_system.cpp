@@ -135,6 +135,11 @@ gpu::MediaHeader MediaSystem::makeHeader(const MediaFrameRequest& request, std::
     header.stepVoxels = settings_.stepScale;
     header.analyticSteps = uint32_t(settings_.steps);
     header.minTransmittance = settings_.minTransmittance;
+    const auto fromEnvironment = [](const gpu::LightData& light) { return (light.flags & gpu::kLightFromEnvironment) != 0; };
+    const auto first = std::find_if(request.lights.begin(), request.lights.end(), fromEnvironment);
+    const auto inEnvironment = uint32_t(request.lights.end() - first);
+    header.environmentFirst = uint32_t(first - request.lights.begin());
+    header.environmentStride = std::max((inEnvironment + uint32_t(settings_.environmentLights) - 1) / uint32_t(settings_.environmentLights), 1u);
     return header;
 }
 
@@ -202,6 +207,9 @@ MediaFrame MediaSystem::beginFrame(fg::FrameGraph& graph, const MediaFrameReques
     r.atlas = atlas_.texture();
     r.noOpticalDepth = noOpticalDepth_;
     r.count = header.mediumCount;
+    r.kinds = (header.mediumCount > header.gridCount ? gpu::kMediaShapes : 0u) | (header.gridCount > 0 ? gpu::kMediaGrids : 0u);
+    if (header.gridCount > 0 && (header.flags & gpu::kMediaExact) != 0) r.kinds |= gpu::kMediaExactGrids;
+    if (header.mediumCount == 1) r.kinds |= gpu::kMediaSingle;
     r.phaseGroups = header.phaseGroupCount == 1 ? 1 : gpu::kMaxPhaseGroups;
     return frame;
 }

@@ -46,7 +46,8 @@ MediumMarch createImages(fg::Builder& builder, const char* const (&names)[3], in
 
 void record(const MarchData& data, fg::PassContext& context, const char* shader) {
     const bool inScatter = bool(data.result.inScatter), emission = bool(data.result.emission);
-    auto command = context.compute(shader, {{"PHASE_GROUPS", int32_t(data.media.phaseGroups)}, {"IN_SCATTER", inScatter}, {"EMISSION", emission}});
+    auto command = context.compute(shader, {{"PHASE_GROUPS", int32_t(data.media.phaseGroups)}, {"IN_SCATTER", inScatter}, {"EMISSION", emission},
+                                            {"MEDIA_KINDS", int32_t(data.media.kinds)}});
     bindView(command, data.view);
     if (inScatter) bindLights(command, data.lights);
     bindMedia(command, data.media);

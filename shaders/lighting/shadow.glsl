@@ -50,6 +50,7 @@ float shadowDistance(float depth, float perspective, float range) {
 int shadowViewOf(uint light, vec3 position) {
     int first = lights[light].shadowIndex;
     int count = shadowViews[first].count;
+    if (count == 1) return first;
     if (lights[light].type == kLightDirectional) {
         for (int i = 0; i < count; ++i) {
             vec3 t = (shadowViews[first + i].shadowFromRender * vec4(position, 1.0)).xyz;
@@ -58,7 +59,6 @@ int shadowViewOf(uint light, vec3 position) {
         }
         return -1;
     }
-    if (count == 1) return first;
     vec3 d = position - (lights[light].samplePoint.w > 0.0 ? lights[light].samplePoint.xyz : lights[light].position.xyz);
     vec3 a = abs(d);
     int axis = a.x >= a.y && a.x >= a.z ? 0 : (a.y >= a.z ? 1 : 2);
@@ -107,11 +107,28 @@ float shadowFetch(ShadowPoint point, ivec2 texel) {
     return texelFetch(shadowAtlas, ivec3(point.corner + texel, point.layer), 0).r;
 }
 
-/// 1 where the map holds nothing nearer to the light than the plane at that texel.
-float shadowCompare(ShadowPoint point, ivec2 texel, float bias) {
-    float held = shadowFetch(point, texel);
-    float own = point.depth + dot(point.gradient, vec2(texel) + 0.5 - point.texel) + bias;
+/// 1 where the map holds nothing nearer to the light than the plane at the texel that the point falls into.
+float shadowHard(ShadowPoint point, float bias) {
+    vec2 texel = floor(point.texel);
+    float held = shadowFetch(point, ivec2(texel));
+    float own = point.depth + dot(point.gradient, texel + 0.5 - point.texel) + bias;
     return held <= 0.0 || own >= held ? 1.0 : 0.0;
+}
+
+/// The same at the four texels around `at`, weighted bilinearly.
+float shadowBilinear(ShadowPoint point, vec2 at, float bias) {
+    at = clamp(at, 1.0, float(point.side) - 1.0); // nothing of the neighbouring squares
+    vec2 low = floor(at - 0.5);
+    vec2 f = at - 0.5 - low;
+    // Gathered at the corner that the four share: there rounding cannot choose others.
+    vec2 size = vec2(textureSize(shadowAtlas, 0).xy);
+    vec4 held = textureGather(shadowAtlas, vec3((vec2(point.corner) + low + 1.0) / size, float(point.layer)));
+    float own = point.depth + dot(point.gradient, low + 0.5 - point.texel) + bias;
+    vec2 g = point.gradient;
+    vec4 planes = own + vec4(g.y, g.x + g.y, g.x, 0.0); // in textureGather's order: upper left, upper right, lower right, lower left
+    vec4 lit = max(vec4(lessThanEqual(held, vec4(0.0))), vec4(greaterThanEqual(planes, held)));
+    vec2 rows = mix(lit.xw, lit.yz, f.x);
+    return mix(rows.y, rows.x, f.y);
 }
 
 /// Steps of the spiral that spreads points evenly over a disc (Vogel): a turn by the golden angle.
@@ -215,30 +232,25 @@ float shadowVisibility(uint light, vec3 position, vec3 offsetNormal, vec2 u) {
     if (index < 0 || !shadowProject(index, position, point)) return 1.0;
     bool onSurface = dot(offsetNormal, offsetNormal) > 0.0;
     if (onSurface) shadowPlane(index, position, offsetNormal, point);
-    bool converge = viewConverges();
+    if (viewConverges()) return shadowHard(point, onSurface ? shadowSurfaceBias(point) : 0.0);
     int searchTaps = shadowViews[index].searchTaps;
-    if (!converge && searchTaps > 0) return shadowSoft(light, point, position, offsetNormal, onSurface, shadowViews[index].taps, searchTaps, u);
-    float bias = onSurface ? shadowSurfaceBias(point) : (converge ? 0.0 : -kMediumBiasTexels * point.oneTexel);
-    // Averaged frames: the texel that the point falls into. Else bilinear comparisons, four texels each, around it.
-    int taps = onSurface ? shadowViews[index].taps : 1;
-    int lookups = converge ? 1 : 4 * taps;
-    float lit = 0.0;
-    float all = 0.0;
-    vec2 spiral = shadowSpiralStart(u.x);
-    for (int i = 0; i < lookups; ++i) {
-        int tap = i >> 2;
-        if (i > 0 && (i & 3) == 0) spiral = kSpiral * spiral;
-        vec2 at = point.texel + (taps > 1 ? kSmallKernelTexels * sqrt((float(tap) + 0.5) / float(taps)) * spiral : vec2(0.0));
-        ivec2 corner = ivec2(i & 1, (i >> 1) & 1);
-        vec2 low = floor(at - 0.5);
-        vec2 f = at - 0.5 - low;
-        vec2 weights = mix(1.0 - f, f, vec2(corner));
-        ivec2 texel = converge ? ivec2(floor(point.texel)) : ivec2(low) + corner;
-        float weight = converge ? 1.0 : weights.x * weights.y;
-        lit += weight * shadowCompare(point, texel, bias);
-        all += weight;
+    int taps = shadowViews[index].taps;
+    // A ray gathers light at many points, each with its own `u`: together they take more lookups than a point on a surface.
+    if (!onSurface) {
+        searchTaps = (searchTaps + 3) / 4;
+        taps = (taps + 3) / 4;
     }
-    return lit / all; // exactly 0 and 1 where all lookups agree
+    if (searchTaps > 0) return shadowSoft(light, point, position, offsetNormal, onSurface, taps, searchTaps, u);
+    if (!onSurface) return shadowBilinear(point, point.texel, -kMediumBiasTexels * point.oneTexel);
+    float bias = shadowSurfaceBias(point);
+    float lit = 0.0;
+    vec2 spiral = shadowSpiralStart(u.x);
+    for (int tap = 0; tap < taps; ++tap) {
+        float radius = taps > 1 ? kSmallKernelTexels * sqrt((float(tap) + 0.5) / float(taps)) : 0.0;
+        lit += shadowBilinear(point, point.texel + radius * spiral, bias);
+        spiral = kSpiral * spiral;
+    }
+    return lit / float(taps);
 }
 
 #endif

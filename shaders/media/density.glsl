@@ -24,7 +24,24 @@ layout(std430) readonly buffer OpticalDepthViews {
 uniform sampler3D mediumAtlas;
 uniform sampler3D lightOpticalDepth;
 
+// A shader that is run for many rays defines MEDIA_KINDS (kMediaShapes and so on): code for what a frame does not have costs
+// registers, even where it is never reached. Without it, everything is there.
+#ifdef MEDIA_KINDS
+const bool kHasShapes = (uint(MEDIA_KINDS) & kMediaShapes) != 0u;
+const bool kHasGrids = (uint(MEDIA_KINDS) & kMediaGrids) != 0u;
+const bool kOneMedium = (uint(MEDIA_KINDS) & kMediaSingle) != 0u;
+bool mediaExact() { return (uint(MEDIA_KINDS) & kMediaExactGrids) != 0u; }
+#else
+const bool kOneMedium = false;
+const bool kHasShapes = true;
+const bool kHasGrids = true;
 bool mediaExact() { return (mediaHeader.flags & kMediaExact) != 0u; }
+#endif
+
+uint mediumCount() { return kOneMedium ? 1u : mediaHeader.mediumCount; }
+/// The grids come last.
+uint firstGrid() { return !kHasShapes ? 0u : !kHasGrids ? mediumCount() : mediaHeader.mediumCount - mediaHeader.gridCount; }
+bool isGrid(uint m) { return kHasGrids && (!kHasShapes || media[m].kind == kMediumGrid); }
 
 /// A ray in a medium's own coordinates with the parameter still in metres of render space.
 struct LocalRay {
@@ -68,10 +85,10 @@ bool clipToUnitBall(LocalRay ray, inout float t0, inout float t1) {
 
 /// Clips [t0,t1] to the part of the ray where medium `m` can have density. False where it has none.
 bool clipToMedium(uint m, LocalRay ray, inout float t0, inout float t1) {
+    if (isGrid(m)) return clipToBox(ray, vec3(0.0), vec3(8 * media[m].gridBricks.xyz), t0, t1);
     uint kind = media[m].kind;
     if (kind == kMediumBox) return clipToBox(ray, vec3(-0.5), vec3(0.5), t0, t1);
     if (kind == kMediumSphere) return clipToUnitBall(ray, t0, t1);
-    if (kind == kMediumGrid) return clipToBox(ray, vec3(0.0), vec3(8 * media[m].gridBricks.xyz), t0, t1);
     return t0 < t1;
 }
 
@@ -136,11 +153,11 @@ float heightDensity(float y, float scaleHeight) {
 /// Density of medium `m` at a point of render space.
 float mediumDensity(uint m, vec3 position) {
     vec3 p = (media[m].localFromRender * vec4(position, 1.0)).xyz;
+    if (isGrid(m)) return sampleGrid(media[m].gridBricks, p);
     uint kind = media[m].kind;
     if (kind == kMediumBox) return all(lessThan(abs(p), vec3(0.5))) ? 1.0 : 0.0;
     if (kind == kMediumSphere) return dot(p, p) < 1.0 ? 1.0 : 0.0;
     if (kind == kMediumHeight) return heightDensity(p.y, media[m].extinction.w);
-    if (kind == kMediumGrid) return sampleGrid(media[m].gridBricks, p);
     return 1.0;
 }
 

@@ -66,7 +66,7 @@ void makeTileList(float distance) {
         spread = max(spread, length(edge.origin - axis.origin));
         halfAngle = max(halfAngle, acos(clamp(dot(edge.direction, axis.direction), -1.0, 1.0)));
     }
-    uint listed = min(params.lightCount, kListedLights);
+    uint listed = min(min(params.lightCount, mediaHeader.environmentFirst), kListedLights);
     for (uint light = self; light < listed; light += 64u)
         if (reachesTile(light, axis, spread, halfAngle, uintBitsToFloat(tileDistance))) atomicOr(tileMask[light >> 5u], 1u << (light & 31u));
     barrier();
@@ -78,14 +78,15 @@ void makeTileList(float distance) {
     barrier();
 }
 
+bool fewLights() { return min(params.lightCount, mediaHeader.environmentFirst) <= kFewLights; }
+
 uint marchLightSlots(uint lightCount) {
-    if (lightCount <= kFewLights) return lightCount;
+    if (fewLights()) return lightCount;
     return tileCount + (lightCount > kListedLights ? lightCount - kListedLights : 0u);
 }
-bool marchLight(uint slot, out uint light) {
-    if (params.lightCount <= kFewLights) light = slot;
-    else light = slot < tileCount ? tileList[slot] : kListedLights + slot - tileCount;
-    return true;
+uint marchLight(uint slot) {
+    if (fewLights()) return slot;
+    return slot < tileCount ? tileList[slot] : kListedLights + slot - tileCount;
 }
 #endif
 
@@ -95,7 +96,7 @@ void main() {
     vec2 centre = vec2(full) + 0.5;
     float distance = rayDistanceFromDepth(centre, texelFetch(depth, full, 0).r);
 #if IN_SCATTER
-    if (params.lightCount > kFewLights) makeTileList(distance);
+    if (!fewLights()) makeTileList(distance);
 #endif
     if (any(greaterThanEqual(pixel, imageSize(transmittance)))) return;
     MarchResult march = marchMedia(cameraRay(centre), distance, kWanted, params.lightCount, uvec2(full));

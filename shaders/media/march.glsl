@@ -164,23 +164,27 @@ vec3 segmentLight(uint light, Ray ray, Segment s, vec3 noise) {
 }
 
 #ifndef MARCH_TILE_LIGHTS
-/// Lights that can reach the ray: here all of them. A shader with a list of its own defines MARCH_TILE_LIGHTS and both functions.
+/// Those of the first `lightCount` lights that can reach the ray: here all of them. A shader with a list of its own defines MARCH_TILE_LIGHTS and both functions.
 uint marchLightSlots(uint lightCount) { return lightCount; }
-bool marchLight(uint slot, out uint light) {
-    light = slot;
-    return true;
-}
+uint marchLight(uint slot) { return slot; }
 #else
 uint marchLightSlots(uint lightCount);
-bool marchLight(uint slot, out uint light);
+uint marchLight(uint slot);
 #endif
 
-vec3 segmentInScatter(Ray ray, Segment s, uint lightCount, vec3 noise) {
+/// `turn` chooses among the environment's lights: each segment takes every environmentStride-th of them for all, and the
+/// next segment others. They are about equally strong, and a ray has many segments.
+vec3 segmentInScatter(Ray ray, Segment s, uint lightCount, vec3 noise, uint turn) {
     vec3 sum = vec3(0.0);
-    uint slots = marchLightSlots(lightCount);
-    for (uint slot = 0u; slot < slots; ++slot) {
-        uint light;
-        if (marchLight(slot, light)) sum += segmentLight(light, ray, s, noise);
+    uint slots = marchLightSlots(min(lightCount, mediaHeader.environmentFirst));
+    uint stride = mediaHeader.environmentStride;
+    uint light = mediaHeader.environmentFirst + turn % stride;
+    uint chosen = light < lightCount ? (lightCount - light + stride - 1u) / stride : 0u;
+    for (uint slot = 0u; slot < slots + chosen; ++slot) {
+        bool fromEnvironment = slot >= slots;
+        uint lamp = fromEnvironment ? light + (slot - slots) * stride : marchLight(slot);
+        vec3 arriving = segmentLight(lamp, ray, s, noise);
+        sum += fromEnvironment ? arriving * float(stride) : arriving;
     }
     return sum;
 }
@@ -198,18 +202,20 @@ MarchResult marchMedia(Ray ray, float distance, uint flags, uint lightCount, uve
         return result;
     }
     vec3 noise = vec3(pixelNoise(pixel, 0u), pixelNoise2(pixel, 1u));
+    uint turn = uint(pixelNoise(pixel, 3u) * float(mediaHeader.environmentStride));
     float opaque = -log(max(mediaHeader.minTransmittance, 1e-30));
     for (int i = 0; i < kMostSegments && t < end && minimumOf(result.opticalDepth) < opaque; ++i) {
         Segment s = marchSegment(ray, t, end);
         t = s.start + s.size;
         vec3 transmittance = exp(-result.opticalDepth);
         if ((flags & kMarchInScatter) != 0u && s.scatters)
-            result.inScatter += transmittance * segmentInScatter(ray, s, lightCount, noise);
+            result.inScatter += transmittance * segmentInScatter(ray, s, lightCount, noise, turn);
         if ((flags & kMarchEmission) != 0u)
             result.emission += transmittance * s.emission * oneMinusExpOverX(s.depth);
         result.opticalDepth = min(result.opticalDepth + s.depth, vec3(kOpaque));
         // Golden ratio and its generalisation to two dimensions: neighbouring segments differ as much as they can.
         noise = fract(noise + vec3(0.61803399, 0.75487767, 0.56984029));
+        ++turn;
     }
     if (t < distance) result.opticalDepth = min(result.opticalDepth + opticalDepthBetween(ray.origin, ray.direction, t, distance), vec3(kOpaque));
     return result;

@@ -53,7 +53,7 @@ float heightDistance(LocalRay ray, float scaleHeight, float t, float target) {
 /// Where gathering light from medium `m` may end: an endless medium is cut where it is opaque or has thinned out.
 float gatherEnd(uint m, LocalRay ray, float t1) {
     uint kind = media[m].kind;
-    if (kind != kMediumEverywhere && kind != kMediumHeight) return t1;
+    if (!kHasShapes || (kind != kMediumEverywhere && kind != kMediumHeight)) return t1;
     vec3 extinction = media[m].extinction.rgb;
     vec3 positive = mix(extinction, vec3(kInfiniteDistance), lessThanEqual(extinction, vec3(0.0)));
     float thinnest = minimumOf(positive);
@@ -70,7 +70,7 @@ float gatherEnd(uint m, LocalRay ray, float t1) {
 bool mediaExtent(Ray ray, float distance, out float start, out float end) {
     start = kInfiniteDistance;
     end = 0.0;
-    for (uint m = 0u; m < mediaHeader.mediumCount; ++m) {
+    for (uint m = 0u; m < mediumCount(); ++m) {
         LocalRay local = localRay(media[m].localFromRender, ray.origin, ray.direction);
         float t0 = 0.0;
         float t1 = distance;
@@ -149,7 +149,7 @@ float nextBorder(uint m, Ray ray, float t, float end) {
     float t1 = end;
     if (!clipToMedium(m, local, t0, t1) || t >= t1) return kInfiniteDistance;
     if (t < t0) return t0;
-    if (media[m].kind == kMediumGrid) return gridStep(m, local, t1, t);
+    if (isGrid(m)) return gridStep(m, local, t1, t);
     return analyticStep(m, local, t0, gatherEnd(m, local, t1), t);
 }
 
@@ -191,15 +191,14 @@ void addMedium(uint m, Ray ray, inout Segment s) {
     float t1 = end;
     // Borders of media are borders of segments: the middle tells whether the segment is inside.
     if (!clipToMedium(m, local, t0, t1) || middle < t0 || middle > t1) return;
-    uint kind = media[m].kind;
     float integral = s.size;
     vec2 ends = vec2(1.0);
-    if (kind == kMediumHeight) {
+    if (isGrid(m)) {
+        integral = gridSegment(m, local, s.start, end, ends);
+    } else if (media[m].kind == kMediumHeight) {
         float scaleHeight = media[m].extinction.w;
         integral = heightIntegral(local, scaleHeight, s.start, end);
         ends = vec2(heightDensity(positionAt(local, s.start).y, scaleHeight), heightDensity(positionAt(local, end).y, scaleHeight));
-    } else if (kind == kMediumGrid) {
-        integral = gridSegment(m, local, s.start, end, ends);
     }
     if (integral <= 0.0) return;
     vec3 extinction = media[m].extinction.rgb;
@@ -220,7 +219,7 @@ void addMedium(uint m, Ray ray, inout Segment s) {
 /// The segment of the ray that begins at `t`.
 Segment marchSegment(Ray ray, float t, float end) {
     float next = end;
-    for (uint m = 0u; m < mediaHeader.mediumCount; ++m) next = min(next, nextBorder(m, ray, t, end));
+    for (uint m = 0u; m < mediumCount(); ++m) next = min(next, nextBorder(m, ray, t, end));
     Segment s;
     s.start = t;
     // Always forward, by more than rounding, so that every march ends.
@@ -231,7 +230,7 @@ Segment marchSegment(Ray ray, float t, float end) {
     s.extinctionStart = 0.0;
     s.extinctionEnd = 0.0;
     s.scatters = false;
-    for (uint m = 0u; m < mediaHeader.mediumCount; ++m) addMedium(m, ray, s);
+    for (uint m = 0u; m < mediumCount(); ++m) addMedium(m, ray, s);
     s.depth = min(s.depth, vec3(kOpaque));
     return s;
 }

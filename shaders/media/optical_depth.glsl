@@ -105,9 +105,8 @@ float gridIntegral(uint m, LocalRay ray, float t0, float t1) {
 float mediumIntegral(uint m, vec3 origin, vec3 direction, float t0, float t1) {
     LocalRay ray = localRay(media[m].localFromRender, origin, direction);
     if (!clipToMedium(m, ray, t0, t1)) return 0.0;
-    uint kind = media[m].kind;
-    if (kind == kMediumHeight) return heightIntegral(ray, media[m].extinction.w, t0, t1);
-    if (kind == kMediumGrid) return gridIntegral(m, ray, t0, t1);
+    if (isGrid(m)) return gridIntegral(m, ray, t0, t1);
+    if (media[m].kind == kMediumHeight) return heightIntegral(ray, media[m].extinction.w, t0, t1);
     return t1 - t0;
 }
 
@@ -120,7 +119,7 @@ vec3 opticalDepthOf(uint first, uint last, vec3 origin, vec3 direction, float t0
 
 /// Optical depth of all media over [t0,t1] metres along a ray. `direction` is unit; 1e30 stands for infinity.
 vec3 opticalDepthBetween(vec3 origin, vec3 direction, float t0, float t1) {
-    return opticalDepthOf(0u, mediaHeader.mediumCount, origin, direction, t0, t1);
+    return opticalDepthOf(0u, mediumCount(), origin, direction, t0, t1);
 }
 
 vec3 opticalDepthAlong(vec3 origin, vec3 direction, float distance) {
@@ -129,11 +128,12 @@ vec3 opticalDepthAlong(vec3 origin, vec3 direction, float distance) {
 
 /// Optical depth of the media that are not grids: always exact, never marched.
 vec3 analyticOpticalDepth(vec3 origin, vec3 direction, float t0, float t1) {
-    return opticalDepthOf(0u, mediaHeader.mediumCount - mediaHeader.gridCount, origin, direction, t0, t1);
+    if (!kHasShapes) return vec3(0.0);
+    return opticalDepthOf(0u, firstGrid(), origin, direction, t0, t1);
 }
 
 vec3 gridOpticalDepth(vec3 origin, vec3 direction, float t0, float t1) {
-    return opticalDepthOf(mediaHeader.mediumCount - mediaHeader.gridCount, mediaHeader.mediumCount, origin, direction, t0, t1);
+    return opticalDepthOf(firstGrid(), mediumCount(), origin, direction, t0, t1);
 }
 
 // ---- towards lights --------------------------------------------------------------------------------------------
@@ -174,7 +174,7 @@ vec3 volumeOpticalDepth(OpticalDepthView v, vec3 position) {
 /// Optical depth from `position` to light number `light`, which lies `distance` metres (1e30: infinity) along `direction`.
 vec3 opticalDepthToLight(uint light, vec3 position, vec3 direction, float distance) {
     vec3 depth = analyticOpticalDepth(position, direction, 0.0, distance);
-    if (mediaHeader.gridCount == 0u) return depth;
+    if (firstGrid() == mediumCount()) return depth;
     if ((mediaHeader.flags & kMediaLightDepthVolume) == 0u) return depth + gridOpticalDepth(position, direction, 0.0, distance);
     uint kind = opticalDepthViews[light].kind;
     if (kind == kDepthViewNone) return depth;

@@ -19,6 +19,12 @@ TYNDALL_CONST uint kNoSlot = 0xffffffffu;
 
 TYNDALL_CONST uint kMaxPhaseGroups = 8u; // different phase functions that a ray's media may have
 
+// The define MEDIA_KINDS: what a frame's media are made of.
+TYNDALL_CONST uint kMediaShapes = 1u; // some without a grid
+TYNDALL_CONST uint kMediaGrids = 2u;  // some with one
+TYNDALL_CONST uint kMediaExactGrids = 4u; // grids are integrated cell by cell (kMediaExact is set)
+TYNDALL_CONST uint kMediaSingle = 8u;     // there is one medium
+
 // MediaHeader.flags
 TYNDALL_CONST uint kMediaExact = 1u;            // integrate grids cell by cell instead of by steps
 TYNDALL_CONST uint kMediaLightDepthVolume = 2u; // grids' optical depth towards lights comes from the light-space volume
@@ -32,7 +38,11 @@ struct MediaHeader {
     float stepVoxels;        // length of a step through a grid, in voxels
     uint analyticSteps;      // steps through a medium without a grid
     float minTransmittance;  // where a march ends
+    uint environmentFirst;   // number of the first light that stands for the environment; all after it do too
+    uint environmentStride;  // a segment of a march gathers from every so many-th of them
     uint padding0;
+    uint padding1;
+    uint padding2;
 };
 
 struct MediumData {

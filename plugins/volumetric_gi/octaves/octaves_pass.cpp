@@ -48,7 +48,7 @@ fg::TextureHandle addOctavesPass(fg::FrameGraph& graph, const plugin::FrameInput
             data.params = {inputs.lights.lightCount, uint32_t(settings.count), settings.scatteringFactor, settings.extinctionFactor, settings.phaseFactor, 0, 0, 0};
         },
         [](const Data& data, fg::PassContext& context) {
-            auto command = context.compute("gi/octaves/march.comp", {{"PHASE_GROUPS", int32_t(data.media.phaseGroups)}});
+            auto command = context.compute("gi/octaves/march.comp", {{"PHASE_GROUPS", int32_t(data.media.phaseGroups)}, {"MEDIA_KINDS", int32_t(data.media.kinds)}});
             bindView(command, data.view);
             bindLights(command, data.lights);
             bindMedia(command, data.media);
