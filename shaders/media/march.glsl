@@ -2,9 +2,10 @@
 // borders of bricks, and after the steps that the settings ask for. Inside a segment everything is a closed form: the
 // light that a constant source sends is the same for any number of steps, from optical depth 0 to opaque.
 //
-// Single scattering takes one point a segment and light. Close to a local light it is chosen evenly in angle as seen from the
-// light (Kulla and Fajardo 2012, "Importance Sampling Techniques for Path Tracing in Participating Media", section 4), so
-// that the inverse square cancels; elsewhere evenly in what the segment scatters. Both are unbiased.
+// Single scattering takes one point a segment and light, several right beside a light. Close to a local light they are
+// chosen evenly in angle as seen from the light (Kulla and Fajardo 2012, "Importance Sampling Techniques for Path Tracing in
+// Participating Media", section 4), so that the inverse square cancels; elsewhere evenly in what the segment scatters. Both
+// are unbiased.
 //
 // Before including this, a shader may define MARCH_PHASE_GROUPS (1 to 8: at least MediaHeader.phaseGroupCount), and
 // MARCH_OCTAVES to replace single scattering by the octaves of `marchOctaves`.
@@ -37,6 +38,7 @@ struct MarchResult {
     vec3 emission;     // nits that the media's own emission sends back along the ray
 };
 
+const float kPointsPerRadian = 2.5; // at which light is gathered, as the light sees them
 const int kMostSegments = 16384; // ends a march whose coordinates have lost their meaning
 
 // ---- where in a segment light is gathered ----------------------------------------------------------------------
@@ -85,32 +87,37 @@ GatherPoint gatherBySegment(Segment s, float u) {
     return GatherPoint(fractionAtDepth(s, x), density / max(meanOf(density / oneMinusExpOverX(s.depth)), 1e-30));
 }
 
-/// Evenly in angle from a light that is `height` away from the ray and abreast of the ray's parameter start - from.
-/// `from`, `to`: the segment's ends, measured from that parameter.
-GatherPoint gatherByAngle(Segment s, float height, float from, float to, float u) {
-    height = max(height, 1e-5 * (to - from));
-    float along = height * height + from * to;
-    float across = height * (to - from);
-    float angle = atan(across, along); // of the segment as the light sees it: no difference of two large angles
-    float c = cos(u * angle);
-    float sn = sin(u * angle);
+/// A segment as a local light sees it: the light is `height` metres away from the ray, and the segment goes from `from` to `to`,
+/// metres along the ray from where the light is abreast. `angle`: that it spans.
+struct Sight {
+    float height;
+    float from;
+    float to;
+    float angle;
+};
+
+/// Evenly in angle from the light.
+GatherPoint gatherByAngle(Segment s, Sight sight, float u) {
+    float height = sight.height;
+    float from = sight.from;
+    float to = sight.to;
+    float c = cos(u * sight.angle);
+    float sn = sin(u * sight.angle);
     float t = clamp(height * (from * c + height * sn) / max(height * c - from * sn, 1e-30), from, to);
     float x = clamp((t - from) / (to - from), 0.0, 1.0);
     // A narrow angle is its tangent: the quotient angle/height stays exact however far away the light is.
-    float anglePerHeight = across < 1e-3 * along ? (to - from) / along : angle / height;
+    float along = height * height + from * to;
+    float anglePerHeight = height * (to - from) < 1e-3 * along ? (to - from) / along : sight.angle / height;
     float sum = s.extinctionStart + s.extinctionEnd;
     float density = sum > 0.0 ? 2.0 * mix(s.extinctionStart, s.extinctionEnd, x) / sum : 1.0;
     vec3 through = exp(-s.depth * depthFraction(s, x));
     return GatherPoint(x, through * (density * anglePerHeight * (height * height + t * t) / (to - from)));
 }
 
-/// False where the light cannot reach the segment.
-bool chooseGatherPoint(uint light, Ray ray, Segment s, float u, out GatherPoint point) {
-    point = GatherPoint(0.0, vec3(0.0));
-    if (lights[light].type == kLightDirectional) {
-        point = gatherBySegment(s, u);
-        return true;
-    }
+/// How the light is gathered from the segment: 0: it does not reach it; 1: one point, gatherBySegment; -n: n points, gatherByAngle.
+int chooseGather(uint light, Ray ray, Segment s, out Sight sight) {
+    sight = Sight(0.0, 0.0, 0.0, 0.0);
+    if (lights[light].type == kLightDirectional) return 1;
     vec3 pivot = lights[light].samplePoint.w > 0.0 ? lights[light].samplePoint.xyz : lights[light].position.xyz;
     float abreast = dot(pivot - ray.origin, ray.direction);
     float height = length(pivot - ray.origin - ray.direction * abreast);
@@ -120,12 +127,16 @@ bool chooseGatherPoint(uint light, Ray ray, Segment s, float u, out GatherPoint 
     float farthest = max(abs(from), abs(to));
     float range = lights[light].position.w;
     float extent = lights[light].type == kLightRect ? length(lights[light].axisX.xyz) + length(lights[light].axisY.xyz) : 0.0;
-    if (range > 0.0 && length(vec2(height, nearest)) > range + extent) return false;
+    if (range > 0.0 && length(vec2(height, nearest)) > range + extent) return 0;
     // Which varies more along the segment: the light's inverse square or the transmittance?
     float low = max(height * height + nearest * nearest, 1e-12 * farthest * farthest);
-    bool byAngle = log((height * height + farthest * farthest) / low) > meanOf(s.depth);
-    point = byAngle ? gatherByAngle(s, height, from, to, u) : gatherBySegment(s, u);
-    return true;
+    if (log((height * height + farthest * farthest) / low) <= meanOf(s.depth)) return 1;
+    height = max(height, 1e-5 * (to - from));
+    // Of the segment as the light sees it: no difference of two large angles.
+    sight = Sight(height, from, to, atan(height * (to - from), height * height + from * to));
+    // Right beside a light the phase function goes from one end to the other within a segment, where the picture is brightest.
+    // All of a ray spans at most half a turn: these are at most nine points more for each light.
+    return -int(ceil(clamp(sight.angle * kPointsPerRadian, 1.0, 8.0)));
 }
 
 // ---- light scattered in a segment -------------------------------------------------------------------------------
@@ -152,15 +163,20 @@ vec3 scatteredLight(Segment s, float cosTheta, vec3 depthToLight) {
 /// Light of one lamp that the segment scatters back along the ray, seen from the segment's start. `noise`: 0..1, along the
 /// segment and over the light's area.
 vec3 segmentLight(uint light, Ray ray, Segment s, vec3 noise) {
-    GatherPoint point;
-    if (!chooseGatherPoint(light, ray, s, noise.x, point)) return vec3(0.0);
-    vec3 position = ray.origin + ray.direction * (s.start + s.size * point.fraction);
-    LightSample arriving = sampleLight(light, position, noise.yz);
-    if (!(maximumOf(arriving.illuminance) > 0.0)) return vec3(0.0);
-    float visible = shadowVisibility(light, position, vec3(0.0), noise.yz);
-    if (visible <= 0.0) return vec3(0.0);
-    vec3 depth = opticalDepthToLight(light, position, arriving.direction, arriving.distance);
-    return point.weight * scatteredLight(s, dot(arriving.direction, ray.direction), depth) * arriving.illuminance * visible;
+    Sight sight;
+    int points = chooseGather(light, ray, s, sight);
+    vec3 sum = vec3(0.0);
+    for (int i = 0; i < abs(points); ++i) {
+        GatherPoint point = points > 0 ? gatherBySegment(s, noise.x) : gatherByAngle(s, sight, (float(i) + noise.x) / float(-points));
+        vec3 position = ray.origin + ray.direction * (s.start + s.size * point.fraction);
+        LightSample arriving = sampleLight(light, position, noise.yz);
+        if (!(maximumOf(arriving.illuminance) > 0.0)) continue;
+        float visible = shadowVisibility(light, position, vec3(0.0), noise.yz);
+        if (visible <= 0.0) continue;
+        vec3 depth = opticalDepthToLight(light, position, arriving.direction, arriving.distance);
+        sum += point.weight * scatteredLight(s, dot(arriving.direction, ray.direction), depth) * arriving.illuminance * visible;
+    }
+    return points == 0 ? sum : sum / float(abs(points));
 }
 
 #ifndef MARCH_TILE_LIGHTS

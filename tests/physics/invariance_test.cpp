@@ -89,17 +89,38 @@ Scene asGrid(const Scene& shape, int n) {
     return grid;
 }
 
-TEST(Invariance, ABoxAndAConstantGridAreTheSameMedium) {
-    const std::string box = R"(,{"name": "m", "medium": {"type": "homogeneous", "shape": "box", "size": [2, 2, 2], "scattering": [0.9, 0.7, 0.5], "absorption": [0.1, 0.1, 0.1], "anisotropy": 0.3}, "translation": [0, 1, 0]})";
-    const Scene shape = testScene(1, box);
+struct Comparison {
+    double relmse, energy, scattered; // of the grid against the box; ratios of the means of beauty and of LVE
+};
+
+Comparison gridAgainstBox(dvec3 lamp) {
+    Scene shape = testScene(1, R"(,{"name": "m", "medium": {"type": "homogeneous", "shape": "box", "size": [2, 2, 2], "scattering": [0.9, 0.7, 0.5], "absorption": [0.1, 0.1, 0.1], "anisotropy": 0.3}, "translation": [0, 1, 0]})");
+    for (Node& node : shape.nodes)
+        if (node.name == "lamp") node.translation = lamp;
     RenderOptions o = options(16);
     o.settings = {"media.integration=exact", "media.lightOpticalDepth=exact"};
-    const Rendered a = sharedRenderer().render(shape, o);
-    const Rendered b = sharedRenderer().render(asGrid(shape, 64), o);
-    std::printf("relmse %.2e; energy %.4f, of the scattered light alone %.4f\n", relmse(b.beauty, a.beauty), mean(b.beauty) / mean(a.beauty),
-                mean(b.terms.at("LVE")) / mean(a.terms.at("LVE")));
+    const Rendered box = sharedRenderer().render(shape, o);
+    const Rendered grid = sharedRenderer().render(asGrid(shape, 64), o);
+    const Comparison c{relmse(grid.beauty, box.beauty), mean(grid.beauty) / mean(box.beauty), mean(grid.terms.at("LVE")) / mean(box.terms.at("LVE"))};
+    std::printf("relmse %.2e; energy %.5f, of the scattered light alone %.5f\n", c.relmse, c.energy, c.scattered);
+    return c;
+}
+
+TEST(Invariance, ABoxAndAConstantGridAreTheSameMedium) {
     // A trilinear field fades over a voxel at its border, half of it outside the box: as much matter, a little more spread out.
-    EXPECT_LE(relmse(b.beauty, a.beauty), 1e-3);
+    const Comparison c = gridAgainstBox(dvec3(0.5, 3, 0.5));
+    EXPECT_LE(c.relmse, 1e-3);
+    EXPECT_NEAR(c.energy, 1, 1e-3);
+    EXPECT_NEAR(c.scattered, 1, 1e-3);
+}
+
+TEST(Invariance, ABoxAndAConstantGridAreTheSameMediumAroundALamp) {
+    // Radiance has a pole where a ray meets the lamp, one over the distance. Its few pixels hold a tenth of the light and
+    // differ by the noise of 16 frames, some 10 %.
+    const Comparison c = gridAgainstBox(dvec3(0.5, 1.6, 0.5));
+    EXPECT_LE(c.relmse, 1e-3);
+    EXPECT_NEAR(c.energy, 1, 1e-2);
+    EXPECT_NEAR(c.scattered, 1, 2e-2);
 }
 
 bool isMediaPass(const std::string& name) { return name.rfind("media", 0) == 0; }
