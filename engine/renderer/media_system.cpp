@@ -136,10 +136,9 @@ gpu::MediaHeader MediaSystem::makeHeader(const MediaFrameRequest& request, std::
     header.analyticSteps = uint32_t(settings_.steps);
     header.minTransmittance = settings_.minTransmittance;
     const auto fromEnvironment = [](const gpu::LightData& light) { return (light.flags & gpu::kLightFromEnvironment) != 0; };
-    const auto first = std::find_if(request.lights.begin(), request.lights.end(), fromEnvironment);
-    const auto inEnvironment = uint32_t(request.lights.end() - first);
-    header.environmentFirst = uint32_t(first - request.lights.begin());
-    header.environmentStride = std::max((inEnvironment + uint32_t(settings_.environmentLights) - 1) / uint32_t(settings_.environmentLights), 1u);
+    header.environmentLights = uint32_t(std::count_if(request.lights.begin(), request.lights.end(), fromEnvironment));
+    const auto atOnce = uint32_t(settings_.environmentLights);
+    header.environmentStride = (header.environmentLights + atOnce - 1) / atOnce;
     return header;
 }
 

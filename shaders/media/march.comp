@@ -37,6 +37,9 @@ shared uint tileList[kListedLights];
 shared uint tileCount;
 shared uint tileDistance; // bits of the farthest end of a ray: positive floats are in the order of their bits
 
+/// All but those that stand for the environment.
+uint localLights() { return params.lightCount - min(mediaHeader.environmentLights, params.lightCount); }
+
 /// Can the light reach a ray of the group? Its rays lie in a cone around `axis` whose apex is `spread` wide.
 bool reachesTile(uint light, Ray axis, float spread, float halfAngle, float farthest) {
     float range = lights[light].position.w;
@@ -66,7 +69,7 @@ void makeTileList(float distance) {
         spread = max(spread, length(edge.origin - axis.origin));
         halfAngle = max(halfAngle, acos(clamp(dot(edge.direction, axis.direction), -1.0, 1.0)));
     }
-    uint listed = min(min(params.lightCount, mediaHeader.environmentFirst), kListedLights);
+    uint listed = min(localLights(), kListedLights);
     for (uint light = self; light < listed; light += 64u)
         if (reachesTile(light, axis, spread, halfAngle, uintBitsToFloat(tileDistance))) atomicOr(tileMask[light >> 5u], 1u << (light & 31u));
     barrier();
@@ -78,7 +81,7 @@ void makeTileList(float distance) {
     barrier();
 }
 
-bool fewLights() { return min(params.lightCount, mediaHeader.environmentFirst) <= kFewLights; }
+bool fewLights() { return localLights() <= kFewLights; }
 
 uint marchLightSlots(uint lightCount) {
     if (fewLights()) return lightCount;

@@ -192,9 +192,10 @@ uint marchLight(uint slot);
 /// next segment others. They are about equally strong, and a ray has many segments.
 vec3 segmentInScatter(Ray ray, Segment s, uint lightCount, vec3 noise, uint turn) {
     vec3 sum = vec3(0.0);
-    uint slots = marchLightSlots(min(lightCount, mediaHeader.environmentFirst));
-    uint stride = mediaHeader.environmentStride;
-    uint light = mediaHeader.environmentFirst + turn % stride;
+    uint listed = lightCount - min(mediaHeader.environmentLights, lightCount);
+    uint slots = marchLightSlots(listed);
+    uint stride = max(mediaHeader.environmentStride, 1u);
+    uint light = listed + turn % stride;
     uint chosen = light < lightCount ? (lightCount - light + stride - 1u) / stride : 0u;
     for (uint slot = 0u; slot < slots + chosen; ++slot) {
         bool fromEnvironment = slot >= slots;

@@ -38,8 +38,8 @@ struct MediaHeader {
     float stepVoxels;        // length of a step through a grid, in voxels
     uint analyticSteps;      // steps through a medium without a grid
     float minTransmittance;  // where a march ends
-    uint environmentFirst;   // number of the first light that stands for the environment; all after it do too
-    uint environmentStride;  // a segment of a march gathers from every so many-th of them
+    uint environmentLights;  // so many of the lights stand for the environment: the last ones
+    uint environmentStride;  // a segment of a march gathers from every so many-th of them; 0 as 1
     uint padding0;
     uint padding1;
     uint padding2;

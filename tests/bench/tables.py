@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """Measures what docs/benchmarks.md shows, and writes it.
 
-    tests/bench/tables.py [--build build/release] [--frames 10]
+    tests/bench/tables.py [--build build/release] [--frames 4]
 
 Scenes: an empty one, Sponza, Sponza with media (the last two where the shared content is: $TYNDALL_CONTENT, else
 ../shared/content). Every number comes from the report of `tyndall capture`: GPU times are the driver's timestamps, frame
@@ -20,43 +20,32 @@ import tempfile
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 SIZES = ["640x360", "1280x720"]
 
-SUN = {"name": "sun", "light": {"type": "directional", "color": [1, 1, 1], "intensity": 20}, "rotation": [-0.5, 0.2, 0, 0.84]}
-LAMPS = [
-    {"name": "lamp", "light": {"type": "point", "color": [1, 0.8, 0.6], "intensity": 100}, "translation": [-4, 2, 0]},
-    {"name": "torch", "light": {"type": "spot", "intensity": 200, "innerConeAngle": 0.2, "outerConeAngle": 0.5},
-     "translation": [5, 5, 0], "rotation": [-0.70710678, 0, 0, 0.70710678]},
-]
-EYE = {"name": "eye", "camera": {"type": "perspective", "yfov": 0.9, "znear": 0.05},
-       "translation": [8, 2, 0], "rotation": [0, 0.70710678, 0, 0.70710678]}
-FOG = {"name": "fog", "medium": {"type": "homogeneous", "shape": "height", "scaleHeight": 20, "scattering": [0.02, 0.02, 0.02],
-                                  "absorption": [0.002, 0.002, 0.002], "anisotropy": 0.3}}
+EYE = {"name": "eye", "camera": {"type": "perspective"}}
 
 
 def scenes(folder, content):
     """Name and scene file of each row."""
-    yield "empty", write(folder, "empty", [EYE])
-    sponza = content / "sponza" / "Sponza.gltf"
-    if not sponza.exists():
-        print(f"note: '{sponza}' is not here; only the empty scene is measured", file=sys.stderr)
+    yield "empty", write(folder, "empty", {"tyndall": 1, "nodes": [EYE], "camera": "eye"})
+    if not (content / "sponza" / "Sponza.gltf").exists():
+        print(f"note: '{content}' has no Sponza; only the empty scene is measured", file=sys.stderr)
         return
-    hall = {"name": "hall", "gltf": str(sponza)}
-    smoke = {"name": "smoke", "medium": {"type": "grid", "file": str(content / "vdb" / "smoke1.vdb"), "grid": "density",
-                                          "scattering": [4, 4, 4], "absorption": [0.4, 0.4, 0.4]},
-             "translation": [0, 1, 0], "scale": [0.05, 0.05, 0.05]}
-    yield "Sponza", write(folder, "sponza", [hall, SUN, *LAMPS, EYE])
-    yield "Sponza with fog and smoke", write(folder, "media", [hall, SUN, *LAMPS, FOG, smoke, EYE])
+    text = (ROOT / "tests/scenes/sponza_fog_smoke.scene.json").read_text()
+    media = json.loads(text.replace("@CONTENT@", str(content)))
+    clear = dict(media, nodes=[node for node in media["nodes"] if "medium" not in node])
+    yield "Sponza", write(folder, "sponza", clear)
+    yield "Sponza with fog and smoke", write(folder, "media", media)
 
 
-def write(folder, name, nodes):
+def write(folder, name, scene):
     path = folder / f"{name}.scene.json"
-    path.write_text(json.dumps({"tyndall": 1, "name": name, "nodes": nodes, "camera": "eye"}))
+    path.write_text(json.dumps(scene))
     return path
 
 
 def measure(program, scene, size, frames, folder, *more):
     report = folder / "report.json"
     subprocess.run([program, "capture", scene, "-o", folder / "out.png", "--size", size, "--frames", str(frames),
-                    "--report", report, "--quiet", *more], check=True)
+                    "--report", report, "--gi", "none", "--quiet", *more], check=True)
     return json.loads(report.read_text())
 
 
@@ -96,10 +85,20 @@ def cost_of_no_media(program, scene, frames, folder):
     return statistics.median(whole) / statistics.median(surfaces), max(surfaces) / min(surfaces)
 
 
+def machine():
+    names = [line.split(":", 1)[1].strip() for line in open("/proc/cpuinfo") if line.startswith("model name")]
+    return f"{os.cpu_count()} cores of {names[0] if names else 'an unknown processor'}"
+
+
+def commit_date():
+    git = subprocess.run(["git", "-C", ROOT, "log", "-1", "--format=%cs"], capture_output=True, text=True)
+    return git.stdout.strip() or "unknown"
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--build", default=ROOT / "build/release", type=pathlib.Path)
-    parser.add_argument("--frames", default=10, type=int)
+    parser.add_argument("--frames", default=4, type=int)
     parser.add_argument("--output", default=ROOT / "docs/benchmarks.md", type=pathlib.Path)
     arguments = parser.parse_args()
     program = arguments.build / "bin/tyndall"
@@ -117,8 +116,8 @@ def main():
     any_report = next(iter(results.values()))
     text = f"""# Benchmarks
 
-Made by `tests/bench/tables.py` on {os.cpu_count()} cores with {any_report["gl"]["renderer"]} ({any_report["gl"]["version"]}, {any_report["backend"]}), {arguments.frames} frames
-each. Software rendering: the numbers compare passes and scenes with each other; a GPU is another world.
+Made by `tests/bench/tables.py` from a release build of {commit_date()}, on {machine()}
+with {any_report["gl"]["renderer"]} ({any_report["gl"]["version"]}, {any_report["backend"]}): {arguments.frames} frames each, direct light and single scattering. Software rendering: the numbers compare passes and scenes with each other; a GPU is another world.
 
 ## Frames, start-up, memory
 The median and the 95th percentile leave out the first frame, in which shaders are compiled. "First picture after" counts from the
