@@ -288,7 +288,9 @@ TEST_P(SurfaceLightTest, WhiteLambertInAWhiteEnvironmentIsWhite) {
     // The plane does not shade itself.
     expectDone(registry_.assign("shadows.enabled=true"));
     expectDone(registry_.assign("environment.lights=16"));
-    EXPECT_NEAR(centre(draw(maker, {.frames = 32}).direct), 1, 0.06);
+    // 512 directions: 4 max(0, cos) has the standard deviation 1.3, so 0.057 is one standard error of independent ones, and they
+    // are better than independent: one in each of 16 regions a frame.
+    EXPECT_NEAR(centre(draw(maker, {.frames = 32}).direct), 1, 0.057);
 }
 
 /// ∫ V·D·cosine of a white metal over the hemisphere, in double, by the half vector.
