@@ -17,8 +17,9 @@ namespace tyndall::editor {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr double kIdleSeconds = 0.25; // how often changed shaders are looked for while nothing happens
-constexpr int kSettleFrames = 3;      // of the interface, after an event
+constexpr double kIdleSeconds =
+    0.25;                        // how often changed shaders are looked for while nothing happens
+constexpr int kSettleFrames = 3; // of the interface, after an event
 
 /// The window's user pointer is a flag that any event sets.
 void wake(GLFWwindow* window) { *static_cast<bool*>(glfwGetWindowUserPointer(window)) = true; }
@@ -67,27 +68,42 @@ Outcome App::openWindow() {
     gl::WindowOptions windowOptions;
     windowOptions.title = "Tyndall";
     windowOptions.size = {options_.windowWidth, options_.windowHeight};
-    windowOptions.visibility = options_.hidden ? gl::WindowVisibility::Hidden : gl::WindowVisibility::Shown;
-    windowOptions.swapInterval = options_.frames > 0 ? gl::SwapInterval::Immediate : gl::SwapInterval::Display;
+    windowOptions.visibility =
+        options_.hidden ? gl::WindowVisibility::Hidden : gl::WindowVisibility::Shown;
+    windowOptions.swapInterval =
+        options_.frames > 0 ? gl::SwapInterval::Immediate : gl::SwapInterval::Display;
     Result<gl::Window> window = gl::Window::create(windowOptions);
-    if (!window.ok()) return failed(window.message() + "; 'tyndall capture' renders without a display");
+    if (!window.ok())
+        return failed(window.message() + "; 'tyndall capture' renders without a display");
     window_ = std::move(*window);
 
     RendererOptions rendererOptions;
     rendererOptions.builtinPlugins = plugin::builtinPlugins();
     rendererOptions.pluginFiles = options_.plan.plugins;
-    Result<std::unique_ptr<Renderer>> renderer = Renderer::create(window_.context(), rendererOptions);
-    if (!renderer.ok()) return options_.plan.plugins.empty() ? failed(renderer.message()) : wrongInput(renderer.message());
+    Result<std::unique_ptr<Renderer>> renderer =
+        Renderer::create(window_.context(), rendererOptions);
+    if (!renderer.ok())
+        return options_.plan.plugins.empty() ? failed(renderer.message())
+                                             : wrongInput(renderer.message());
     renderer_ = std::move(*renderer);
-    if (Outcome opened = Session::open(scene_, *renderer_, messages_, options_, session_); !opened.ok()) return opened;
+    if (Outcome opened = Session::open(scene_, *renderer_, messages_, options_, session_);
+        !opened.ok())
+        return opened;
 
     // A processor that draws is slow: moving about matters more than pixels. A screenshot of so many frames has them all.
     const std::string& driver = window_.context().capabilities().renderer;
-    if (options_.frames == 0 && (driver.find("llvmpipe") != std::string::npos || driver.find("softpipe") != std::string::npos)) session_->reduction = 2;
+    if (options_.frames == 0 && (driver.find("llvmpipe") != std::string::npos ||
+                                 driver.find("softpipe") != std::string::npos))
+        session_->reduction = 2;
 
     listen(window_.handle(), &eventArrived);
     interface_ = std::make_unique<UserInterface>(window_, !options_.hidden);
-    savePath_ = fs::path(options_.render.scene).filename().replace_extension("").replace_extension("").string() + "-edited.scene.json";
+    savePath_ = fs::path(options_.render.scene)
+                    .filename()
+                    .replace_extension("")
+                    .replace_extension("")
+                    .string() +
+                "-edited.scene.json";
     return {};
 }
 
@@ -104,9 +120,11 @@ Outcome App::loop() {
         if (renderer_->reloadShaders()) session_->picture().invalidate();
         if (options_.frames > 0) session_->picture().invalidate(); // so many frames were asked for
         drawInterface();
-        if (beforeFirstPicture_ > 0 && --beforeFirstPicture_ > 0) continue; // the pane's size is only known once the interface has settled
+        if (beforeFirstPicture_ > 0 && --beforeFirstPicture_ > 0)
+            continue; // the pane's size is only known once the interface has settled
         if (session_->update()) {
-            interfaceFrames_ = std::max(interfaceFrames_, 1); // the new picture is shown by the next
+            interfaceFrames_ =
+                std::max(interfaceFrames_, 1); // the new picture is shown by the next
             timingsKnown_ = false;
         }
         if (first && session_->picture().result()) {
@@ -119,17 +137,21 @@ Outcome App::loop() {
             askToQuit_ = true;
         }
     }
-    if (!session_->picture().failure().empty() && options_.frames > 0) return failed(session_->picture().failure());
+    if (!session_->picture().failure().empty() && options_.frames > 0)
+        return failed(session_->picture().failure());
     if (options_.screenshot.empty()) return {};
     const std::vector<uint8_t> bytes = session_->picture().read();
-    return outcomeOf(writePng(options_.screenshot, session_->picture().width(), session_->picture().height(), 3, bytes), ExitStatus::Failed);
+    return outcomeOf(writePng(options_.screenshot, session_->picture().width(),
+                              session_->picture().height(), 3, bytes),
+                     ExitStatus::Failed);
 }
 
 void App::waitForEvents() {
     const bool busy = !session_->picture().atRest() || interfaceFrames_ > 0 || options_.frames > 0;
     if (busy) {
         gl::Window::pollEvents();
-    } else if (!timingsKnown_) { // the last frames' times come some frames late; none follow, so they are waited for
+    } else if (
+        !timingsKnown_) { // the last frames' times come some frames late; none follow, so they are waited for
         renderer_->waitForTimings();
         timingsKnown_ = true;
         interfaceFrames_ = 1;
@@ -137,7 +159,9 @@ void App::waitForEvents() {
     } else {
         glfwWaitEventsTimeout(kIdleSeconds);
     }
-    const bool held = ImGui::IsAnyMouseDown() || ImGui::GetIO().WantTextInput; // keys that are held move the camera; a cursor blinks
+    const bool held =
+        ImGui::IsAnyMouseDown() ||
+        ImGui::GetIO().WantTextInput; // keys that are held move the camera; a cursor blinks
     if (eventArrived || held) interfaceFrames_ = kSettleFrames;
     eventArrived = false;
 }
@@ -154,8 +178,10 @@ void App::drawInterface() {
     ImGui::SetNextWindowSize(viewport->WorkSize);
     ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(0, 0));
     ImGui::PushStyleVar(ImGuiStyleVar_WindowBorderSize, 0.0f);
-    ImGui::Begin("Tyndall", nullptr, ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
-                                         ImGuiWindowFlags_NoBringToFrontOnFocus | ImGuiWindowFlags_NoScrollWithMouse);
+    ImGui::Begin("Tyndall", nullptr,
+                 ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove |
+                     ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoBringToFrontOnFocus |
+                     ImGuiWindowFlags_NoScrollWithMouse);
     ImGui::PopStyleVar(2);
     drawPanes(*session_);
     ImGui::End();
@@ -167,18 +193,24 @@ void App::drawInterface() {
 }
 
 void App::updateTitle() {
-    const std::string title = fmt::format("{}{} - Tyndall", session_->history().hasUnsavedEdits() ? "*" : "", options_.render.scene);
+    const std::string title = fmt::format(
+        "{}{} - Tyndall", session_->history().hasUnsavedEdits() ? "*" : "", options_.render.scene);
     if (title == title_) return;
     glfwSetWindowTitle(window_.handle(), title.c_str());
     title_ = title;
 }
 
 void App::screenshot(const char* ending) {
-    const std::string stem = fs::path(options_.render.scene).filename().replace_extension("").replace_extension("").string();
+    const std::string stem = fs::path(options_.render.scene)
+                                 .filename()
+                                 .replace_extension("")
+                                 .replace_extension("")
+                                 .string();
     for (int number = 1;; ++number) { // never over an older one
         const std::string path = fmt::format("{}-{:03}.{}", stem, number, ending);
         if (fs::exists(path)) continue;
-        return std::string_view(ending) == "png" ? session_->saveScreenshot(path) : session_->saveExr(path);
+        return std::string_view(ending) == "png" ? session_->saveScreenshot(path)
+                                                 : session_->saveExr(path);
     }
 }
 
@@ -187,7 +219,8 @@ void App::copyCommandLine() {
     ImGui::SetClipboardText(line.c_str());
     log::info("copied: " + line);
     if (session_->history().hasUnsavedEdits())
-        log::warning("the scene has edits that its file does not have: save a copy first, and the line will show them");
+        log::warning(
+            "the scene has edits that its file does not have: save a copy first, and the line will show them");
 }
 
 void App::drawFileMenu() {
@@ -204,7 +237,8 @@ void App::drawEditMenu() {
     History& history = session_->history();
     const std::string undo = history.undoName(), redo = history.redoName();
     if (ImGui::MenuItem(("Undo " + undo).c_str(), "Ctrl+Z", false, !undo.empty())) history.undo();
-    if (ImGui::MenuItem(("Redo " + redo).c_str(), "Ctrl+Shift+Z", false, !redo.empty())) history.redo();
+    if (ImGui::MenuItem(("Redo " + redo).c_str(), "Ctrl+Shift+Z", false, !redo.empty()))
+        history.redo();
 }
 
 void App::drawMenu() {
@@ -219,25 +253,29 @@ void App::drawMenu() {
     }
     if (ImGui::BeginMenu("View")) {
         if (ImGui::MenuItem("Frame the selection, or the scene", "F")) session_->frameSelection();
-        if (ImGui::MenuItem("Back to the scene's camera", "Home")) session_->lookThrough(scene_.activeCamera);
+        if (ImGui::MenuItem("Back to the scene's camera", "Home"))
+            session_->lookThrough(scene_.activeCamera);
         ImGui::MenuItem("Converge", "C", &session_->request.converge);
         if (ImGui::MenuItem("Panes as at first")) resetLayout();
         ImGui::EndMenu();
     }
     if (ImGui::BeginMenu("Help")) {
-        ImGui::TextUnformatted("In the picture:\n"
-                               "  right button + W A S D Q E   fly (Shift: faster; wheel: speed)\n"
-                               "  Alt + left button            orbit\n"
-                               "  middle button                pan\n"
-                               "  wheel                        nearer, farther\n"
-                               "  F                            frame the selection, or the scene\n"
-                               "  Home                         the scene's camera\n"
-                               "  Esc                          clear the selection, show the picture\n\n"
-                               "Everything that can be dragged can be typed: Ctrl + click.");
+        ImGui::TextUnformatted(
+            "In the picture:\n"
+            "  right button + W A S D Q E   fly (Shift: faster; wheel: speed)\n"
+            "  Alt + left button            orbit\n"
+            "  middle button                pan\n"
+            "  wheel                        nearer, farther\n"
+            "  F                            frame the selection, or the scene\n"
+            "  Home                         the scene's camera\n"
+            "  Esc                          clear the selection, show the picture\n\n"
+            "Everything that can be dragged can be typed: Ctrl + click.");
         ImGui::EndMenu();
     }
-    const std::string scene = fmt::format("{}{}", options_.render.scene, session_->history().hasUnsavedEdits() ? " (edited)" : "");
-    ImGui::SameLine(ImGui::GetWindowWidth() - ImGui::CalcTextSize(scene.c_str()).x - ImGui::GetFontSize());
+    const std::string scene = fmt::format("{}{}", options_.render.scene,
+                                          session_->history().hasUnsavedEdits() ? " (edited)" : "");
+    ImGui::SameLine(ImGui::GetWindowWidth() - ImGui::CalcTextSize(scene.c_str()).x -
+                    ImGui::GetFontSize());
     ImGui::TextDisabled("%s", scene.c_str());
     ImGui::EndMainMenuBar();
 }
@@ -250,7 +288,8 @@ void App::drawSaveDialog() {
         savePath_.copy(path, sizeof path - 1);
         ImGui::SetNextItemWidth(ImGui::GetFontSize() * 28);
         if (ImGui::IsWindowAppearing()) ImGui::SetKeyboardFocusHere();
-        const bool entered = ImGui::InputText("##path", path, sizeof path, ImGuiInputTextFlags_EnterReturnsTrue);
+        const bool entered =
+            ImGui::InputText("##path", path, sizeof path, ImGuiInputTextFlags_EnterReturnsTrue);
         savePath_ = path;
         if (ImGui::Button("Save") || entered) {
             session_->saveScene(savePath_);

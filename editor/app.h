@@ -42,7 +42,7 @@ private:
     std::unique_ptr<Session> session_;
     std::unique_ptr<UserInterface> interface_;
 
-    int interfaceFrames_ = 3;  // still to draw: ImGui needs a few to settle after an event
+    int interfaceFrames_ = 3; // still to draw: ImGui needs a few to settle after an event
     int beforeFirstPicture_ = 3;
     bool timingsKnown_ = true; // of the last picture
     bool quit_ = false, askToQuit_ = false, openSaveDialog_ = false;

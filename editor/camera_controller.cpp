@@ -34,7 +34,8 @@ void CameraController::turn(const dvec2& pixels) {
     const double elevation = std::asin(std::clamp(forward().y, -1.0, 1.0));
     // A camera that starts beyond the limit may come back, not go on.
     const double lowest = std::min(-kSteepest, elevation), highest = std::max(kSteepest, elevation);
-    const double pitch = std::clamp(elevation - pixels.y * kRadiansPerPixel, lowest, highest) - elevation;
+    const double pitch =
+        std::clamp(elevation - pixels.y * kRadiansPerPixel, lowest, highest) - elevation;
     const dquat yaw = glm::angleAxis(-pixels.x * kRadiansPerPixel, dvec3(0, 1, 0));
     rotation_ = glm::normalize(yaw * rotation_ * glm::angleAxis(pitch, dvec3(1, 0, 0)));
 }

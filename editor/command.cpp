@@ -10,12 +10,15 @@
 namespace tyndall::editor {
 namespace {
 
-std::string quotedName(const std::string& name, const char* otherwise) { return name.empty() ? otherwise : "'" + name + "'"; }
+std::string quotedName(const std::string& name, const char* otherwise) {
+    return name.empty() ? otherwise : "'" + name + "'";
+}
 
 class ChangeVisibility final : public Command {
 public:
     ChangeVisibility(const Scene& scene, int node, bool visible)
-        : node_(node), before_(scene.nodes.at(size_t(node)).visible), after_(visible), what_(quotedName(scene.nodes[size_t(node)].name, "a node")) {}
+        : node_(node), before_(scene.nodes.at(size_t(node)).visible), after_(visible),
+          what_(quotedName(scene.nodes[size_t(node)].name, "a node")) {}
     [[nodiscard]] std::string name() const override { return (after_ ? "show " : "hide ") + what_; }
     void apply(EditTarget target) const override { setNodeVisible(target.scene, node_, after_); }
     void revert(EditTarget target) const override { setNodeVisible(target.scene, node_, before_); }
@@ -36,7 +39,8 @@ struct Transform {
 
 class ChangeTransform final : public Command {
 public:
-    ChangeTransform(const Scene& scene, int node, Transform after) : node_(node), after_(std::move(after)) {
+    ChangeTransform(const Scene& scene, int node, Transform after)
+        : node_(node), after_(std::move(after)) {
         const Node& n = scene.nodes.at(size_t(node));
         before_ = {n.translation, n.scale, n.rotation, n.matrix};
         what_ = quotedName(n.name, "a node");
@@ -62,8 +66,7 @@ private:
 };
 
 /// A light or a medium, replaced as a whole.
-template <typename T>
-class Replace final : public Command {
+template <typename T> class Replace final : public Command {
 public:
     using Set = void (*)(Scene&, int, T);
     Replace(Set set, int index, T before, T after, const char* kind)
@@ -107,17 +110,21 @@ public:
     struct Change {
         std::string key, before, after;
     };
-    ChangeSettings(std::string what, std::vector<Change> changes) : what_(std::move(what)), changes_(std::move(changes)) {}
+    ChangeSettings(std::string what, std::vector<Change> changes)
+        : what_(std::move(what)), changes_(std::move(changes)) {}
     [[nodiscard]] std::string name() const override { return what_; }
     void apply(EditTarget target) const override {
         for (const Change& change : changes_) set(target.settings, change.key, change.after);
     }
     void revert(EditTarget target) const override {
-        for (auto change = changes_.rbegin(); change != changes_.rend(); ++change) set(target.settings, change->key, change->before);
+        for (auto change = changes_.rbegin(); change != changes_.rend(); ++change)
+            set(target.settings, change->key, change->before);
     }
     bool absorb(const Command& next) override {
         const auto* step = dynamic_cast<const ChangeSettings*>(&next);
-        if (!step || changes_.size() != 1 || step->changes_.size() != 1 || step->changes_[0].key != changes_[0].key) return false;
+        if (!step || changes_.size() != 1 || step->changes_.size() != 1 ||
+            step->changes_[0].key != changes_[0].key)
+            return false;
         changes_[0].after = step->changes_[0].after;
         return true;
     }
@@ -134,25 +141,35 @@ private:
 
 } // namespace
 
-CommandPtr changeVisibility(const Scene& scene, int node, bool visible) { return std::make_unique<ChangeVisibility>(scene, node, visible); }
+CommandPtr changeVisibility(const Scene& scene, int node, bool visible) {
+    return std::make_unique<ChangeVisibility>(scene, node, visible);
+}
 
-CommandPtr changeTransform(const Scene& scene, int node, const dvec3& translation, const dquat& rotation, const dvec3& scale) {
-    return std::make_unique<ChangeTransform>(scene, node, Transform{translation, scale, rotation, std::nullopt});
+CommandPtr changeTransform(const Scene& scene, int node, const dvec3& translation,
+                           const dquat& rotation, const dvec3& scale) {
+    return std::make_unique<ChangeTransform>(scene, node,
+                                             Transform{translation, scale, rotation, std::nullopt});
 }
 
 CommandPtr changeLight(const Scene& scene, int light, Light after) {
-    return std::make_unique<Replace<Light>>(&setLight, light, scene.lights.at(size_t(light)), std::move(after), "a light");
+    return std::make_unique<Replace<Light>>(&setLight, light, scene.lights.at(size_t(light)),
+                                            std::move(after), "a light");
 }
 
 CommandPtr changeMedium(const Scene& scene, int medium, Medium after) {
-    return std::make_unique<Replace<Medium>>(&setMedium, medium, scene.media.at(size_t(medium)), std::move(after), "a medium");
+    return std::make_unique<Replace<Medium>>(&setMedium, medium, scene.media.at(size_t(medium)),
+                                             std::move(after), "a medium");
 }
 
-CommandPtr changeExposure(const Scene& scene, float ev100) { return std::make_unique<ChangeExposure>(scene.ev100, ev100); }
+CommandPtr changeExposure(const Scene& scene, float ev100) {
+    return std::make_unique<ChangeExposure>(scene.ev100, ev100);
+}
 
-CommandPtr changeSettings(const SettingsRegistry& settings, std::string what, const std::vector<std::pair<std::string, std::string>>& assignments) {
+CommandPtr changeSettings(const SettingsRegistry& settings, std::string what,
+                          const std::vector<std::pair<std::string, std::string>>& assignments) {
     std::vector<ChangeSettings::Change> changes;
-    for (const auto& [key, text] : assignments) changes.push_back({key, settings.get(key).value(), text});
+    for (const auto& [key, text] : assignments)
+        changes.push_back({key, settings.get(key).value(), text});
     return std::make_unique<ChangeSettings>(std::move(what), std::move(changes));
 }
 
@@ -178,8 +195,12 @@ void History::redo() {
     open_ = false;
 }
 
-std::string History::undoName() const { return position_ > 0 ? commands_[position_ - 1]->name() : ""; }
-std::string History::redoName() const { return position_ < commands_.size() ? commands_[position_]->name() : ""; }
+std::string History::undoName() const {
+    return position_ > 0 ? commands_[position_ - 1]->name() : "";
+}
+std::string History::redoName() const {
+    return position_ < commands_.size() ? commands_[position_]->name() : "";
+}
 
 bool History::hasUnsavedEdits() const {
     if (saved_ == kLost) return true;

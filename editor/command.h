@@ -34,13 +34,15 @@ using CommandPtr = std::unique_ptr<Command>;
 
 CommandPtr changeVisibility(const Scene& scene, int node, bool visible);
 /// Replaces any matrix of the node.
-CommandPtr changeTransform(const Scene& scene, int node, const dvec3& translation, const dquat& rotation, const dvec3& scale);
+CommandPtr changeTransform(const Scene& scene, int node, const dvec3& translation,
+                           const dquat& rotation, const dvec3& scale);
 CommandPtr changeLight(const Scene& scene, int light, Light after);
 CommandPtr changeMedium(const Scene& scene, int medium, Medium after);
 /// In stops.
 CommandPtr changeExposure(const Scene& scene, float ev100);
 /// Assignments KEY, TEXT that the registry accepts; `what` names the edit.
-CommandPtr changeSettings(const SettingsRegistry& settings, std::string what, const std::vector<std::pair<std::string, std::string>>& assignments);
+CommandPtr changeSettings(const SettingsRegistry& settings, std::string what,
+                          const std::vector<std::pair<std::string, std::string>>& assignments);
 
 /// Done and undone commands, in order.
 class History {
@@ -64,9 +66,9 @@ public:
 private:
     EditTarget target_;
     std::vector<CommandPtr> commands_;
-    size_t position_ = 0;     // commands before it are done
-    size_t saved_ = 0;        // position at the last save; kLost where no undo leads back to it
-    bool open_ = false;       // may the last command absorb the next?
+    size_t position_ = 0; // commands before it are done
+    size_t saved_ = 0;    // position at the last save; kLost where no undo leads back to it
+    bool open_ = false;   // may the last command absorb the next?
     static constexpr size_t kLost = size_t(-1);
 };
 

@@ -19,30 +19,38 @@ void* openSection(ImGuiContext*, ImGuiSettingsHandler*, const char*) { return &l
 
 void readLine(ImGuiContext*, ImGuiSettingsHandler*, void*, const char* line) {
     Layout read = layout;
-    if (std::sscanf(line, "Shares=%f,%f,%f,%f,%f", &read.left, &read.right, &read.bottom, &read.leftUpper, &read.rightUpper) != 5) return;
+    if (std::sscanf(line, "Shares=%f,%f,%f,%f,%f", &read.left, &read.right, &read.bottom,
+                    &read.leftUpper, &read.rightUpper) != 5)
+        return;
     for (const float share : {read.left, read.right, read.bottom, read.leftUpper, read.rightUpper})
         if (!(share >= kSmallest && share <= kLargest)) return; // edited by hand, or damaged
     if (read.left + read.right < kLargest) layout = read;
 }
 
 void writeAll(ImGuiContext*, ImGuiSettingsHandler* handler, ImGuiTextBuffer* text) {
-    text->appendf("[%s][Panes]\nShares=%.4f,%.4f,%.4f,%.4f,%.4f\n\n", handler->TypeName, double(layout.left), double(layout.right), double(layout.bottom),
+    text->appendf("[%s][Panes]\nShares=%.4f,%.4f,%.4f,%.4f,%.4f\n\n", handler->TypeName,
+                  double(layout.left), double(layout.right), double(layout.bottom),
                   double(layout.leftUpper), double(layout.rightUpper));
 }
 
 /// A bar to drag. `share` grows to the right or down, or the other way for `sign` -1; `extent`: pixels of the whole.
-void splitter(const char* name, bool vertical, float& share, float extent, float sign, float length) {
+void splitter(const char* name, bool vertical, float& share, float extent, float sign,
+              float length) {
     const float thickness = std::max(4.0f, ImGui::GetFontSize() * 0.3f);
     ImGui::InvisibleButton(name, vertical ? ImVec2(thickness, length) : ImVec2(length, thickness));
     if (ImGui::IsItemHovered() || ImGui::IsItemActive())
         ImGui::SetMouseCursor(vertical ? ImGuiMouseCursor_ResizeEW : ImGuiMouseCursor_ResizeNS);
     if (ImGui::IsItemActive()) {
         const float moved = vertical ? ImGui::GetIO().MouseDelta.x : ImGui::GetIO().MouseDelta.y;
-        share = std::clamp(share + sign * moved / std::max(extent, 1.0f), kSmallest, 0.45f + (vertical ? 0.0f : 0.49f));
+        share = std::clamp(share + sign * moved / std::max(extent, 1.0f), kSmallest,
+                           0.45f + (vertical ? 0.0f : 0.49f));
         ImGui::MarkIniSettingsDirty();
     }
-    const ImU32 color = ImGui::GetColorU32(ImGui::IsItemActive() || ImGui::IsItemHovered() ? ImGuiCol_ButtonHovered : ImGuiCol_WindowBg);
-    ImGui::GetWindowDrawList()->AddRectFilled(ImGui::GetItemRectMin(), ImGui::GetItemRectMax(), color);
+    const ImU32 color =
+        ImGui::GetColorU32(ImGui::IsItemActive() || ImGui::IsItemHovered() ? ImGuiCol_ButtonHovered
+                                                                           : ImGuiCol_WindowBg);
+    ImGui::GetWindowDrawList()->AddRectFilled(ImGui::GetItemRectMin(), ImGui::GetItemRectMax(),
+                                              color);
 }
 
 using Draw = void (*)(Session&);
@@ -52,7 +60,8 @@ struct Tab {
 };
 
 /// A child window whose panes are tabs.
-void drawTabs(const char* name, const ImVec2& size, Session& session, std::initializer_list<Tab> tabs) {
+void drawTabs(const char* name, const ImVec2& size, Session& session,
+              std::initializer_list<Tab> tabs) {
     ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, paneSpacing);
     ImGui::BeginChild(name, size, true);
     if (ImGui::BeginTabBar("tabs")) {
@@ -78,20 +87,23 @@ void drawLeft(Session& session, const Room& room, float width) {
     const float upper = room.height * layout.leftUpper;
     drawTabs("scene", {width, upper}, session, {{"Scene", drawSceneTree}});
     splitter("##leftBar", false, layout.leftUpper, room.height, 1, width);
-    drawTabs("inspector", {width, room.height - upper - room.bar}, session, {{"Inspector", drawInspector}});
+    drawTabs("inspector", {width, room.height - upper - room.bar}, session,
+             {{"Inspector", drawInspector}});
     ImGui::EndGroup();
 }
 
 void drawMiddle(Session& session, const Room& room, float width) {
     ImGui::BeginGroup();
     const float lower = room.height * layout.bottom;
-    ImGui::BeginChild("viewport", {width, room.height - lower - room.bar}, true, ImGuiWindowFlags_NoScrollbar | ImGuiWindowFlags_NoScrollWithMouse);
+    ImGui::BeginChild("viewport", {width, room.height - lower - room.bar}, true,
+                      ImGuiWindowFlags_NoScrollbar | ImGuiWindowFlags_NoScrollWithMouse);
     ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, paneSpacing);
     drawViewport(session);
     ImGui::PopStyleVar();
     ImGui::EndChild();
     splitter("##middleBar", false, layout.bottom, room.height, -1, width);
-    drawTabs("reports", {width, lower}, session, {{"Profiler", drawProfiler}, {"Frame graph", drawFrameGraph}, {"Log", drawLog}});
+    drawTabs("reports", {width, lower}, session,
+             {{"Profiler", drawProfiler}, {"Frame graph", drawFrameGraph}, {"Log", drawLog}});
     ImGui::EndGroup();
 }
 
@@ -100,7 +112,8 @@ void drawRight(Session& session, const Room& room, float width) {
     const float upper = room.height * layout.rightUpper;
     drawTabs("techniques", {width, upper}, session, {{"Techniques", drawTechniques}});
     splitter("##rightBar", false, layout.rightUpper, room.height, 1, width);
-    drawTabs("settings", {width, room.height - upper - room.bar}, session, {{"Settings", drawSettings}});
+    drawTabs("settings", {width, room.height - upper - room.bar}, session,
+             {{"Settings", drawSettings}});
     ImGui::EndGroup();
 }
 

@@ -10,14 +10,18 @@
 
 namespace tyndall::editor {
 
-std::string LivePicture::keyOf(Renderer& renderer, const Scene& scene, const FrameRequest& request) {
+std::string LivePicture::keyOf(Renderer& renderer, const Scene& scene,
+                               const FrameRequest& request) {
     const SceneVersions& v = scene.versions;
-    std::string key = fmt::format("{} {} {} {} {} {} {} {} {} {} | {}x{} {} {} {} {} {} {} {} | ", v.structure, v.transforms, v.meshes, v.materials,
-                                  v.textures, v.lights, v.media, v.cameras, v.environment, scene.ev100, request.width, request.height,
-                                  request.cameraNode, scene.activeCamera, request.terms, request.gi, request.time, request.seed, request.converge);
+    std::string key = fmt::format(
+        "{} {} {} {} {} {} {} {} {} {} | {}x{} {} {} {} {} {} {} {} | ", v.structure, v.transforms,
+        v.meshes, v.materials, v.textures, v.lights, v.media, v.cameras, v.environment, scene.ev100,
+        request.width, request.height, request.cameraNode, scene.activeCamera, request.terms,
+        request.gi, request.time, request.seed, request.converge);
     if (request.pose) {
         for (int c = 0; c < 4; ++c)
-            for (int r = 0; r < 4; ++r) key += fmt::format("{} ", request.pose->worldFromCamera[c][r]);
+            for (int r = 0; r < 4; ++r)
+                key += fmt::format("{} ", request.pose->worldFromCamera[c][r]);
         key += fmt::format("{} {} ", request.pose->camera.yfov, request.pose->camera.ymag);
     }
     key += request.inspect;
@@ -53,7 +57,9 @@ std::vector<uint8_t> LivePicture::read() const {
     if (!texture_) return {};
     const Image image = gl::readImage(texture_);
     std::vector<uint8_t> bytes(size_t(image.width) * size_t(image.height) * 3);
-    for (size_t i = 0; i < bytes.size(); ++i) bytes[i] = uint8_t(std::lround(image.pixels[i / 3 * size_t(image.channels) + i % 3] * 255.0f));
+    for (size_t i = 0; i < bytes.size(); ++i)
+        bytes[i] =
+            uint8_t(std::lround(image.pixels[i / 3 * size_t(image.channels) + i % 3] * 255.0f));
     return bytes;
 }
 

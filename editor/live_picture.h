@@ -38,7 +38,8 @@ public:
     [[nodiscard]] std::vector<uint8_t> read() const;
 
 private:
-    [[nodiscard]] static std::string keyOf(Renderer& renderer, const Scene& scene, const FrameRequest& request);
+    [[nodiscard]] static std::string keyOf(Renderer& renderer, const Scene& scene,
+                                           const FrameRequest& request);
     gl::Texture texture_;
     std::string key_, failure_;
     std::optional<FrameResult> result_;

@@ -14,7 +14,9 @@ Messages::Messages() {
 Messages::~Messages() { log::setSink(std::move(before_)); }
 
 void Messages::hear(log::Level level, std::string_view text) {
-    const char* prefix = level == log::Level::Warning ? "warning: " : level == log::Level::Error ? "error: " : "";
+    const char* prefix = level == log::Level::Warning ? "warning: "
+                         : level == log::Level::Error ? "error: "
+                                                      : "";
     std::fprintf(stderr, "%s%.*s\n", prefix, int(text.size()), text.data());
     const std::scoped_lock lock(mutex_);
     ++total_;

@@ -10,13 +10,13 @@
 namespace tyndall::editor {
 
 struct EditorOptions {
-    RenderOptions render;        // as `tyndall capture` has them
-    RenderPlan plan;             // the same, understood; without --size the pane decides
-    bool fixedSize = false;      // --size was given
-    bool hidden = false;         // no window appears and no layout is read or written
+    RenderOptions render;   // as `tyndall capture` has them
+    RenderPlan plan;        // the same, understood; without --size the pane decides
+    bool fixedSize = false; // --size was given
+    bool hidden = false;    // no window appears and no layout is read or written
     bool converge = false;
-    int frames = 0;              // > 0: quit after so many
-    std::string screenshot;      // PNG of the viewport at the end; empty: none
+    int frames = 0;         // > 0: quit after so many
+    std::string screenshot; // PNG of the viewport at the end; empty: none
     std::string windowSize = "1600x950";
     int windowWidth = 0, windowHeight = 0;
 };

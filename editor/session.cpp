@@ -26,8 +26,10 @@ Bounds boundsBelow(const Scene& scene, int root) {
         below[i] = int(i) == root || (node.parent != kNone && below[size_t(node.parent)]);
         if (!below[i]) continue;
         for (const int mesh : node.meshes) {
-            if (node.instances.empty()) bounds.include(scene.meshes[size_t(mesh)].bounds.transformed(world[i]));
-            for (const dmat4& instance : node.instances) bounds.include(scene.meshes[size_t(mesh)].bounds.transformed(world[i] * instance));
+            if (node.instances.empty())
+                bounds.include(scene.meshes[size_t(mesh)].bounds.transformed(world[i]));
+            for (const dmat4& instance : node.instances)
+                bounds.include(scene.meshes[size_t(mesh)].bounds.transformed(world[i] * instance));
         }
         if (node.medium != kNone) {
             const dvec3 half = 0.5 * scene.media[size_t(node.medium)].size;
@@ -41,7 +43,11 @@ Bounds boundsBelow(const Scene& scene, int root) {
 } // namespace
 
 std::string shellWord(const std::string& text) {
-    const bool plain = !text.empty() && text.find_first_not_of("ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_-+=./,:@%") == std::string::npos;
+    const bool plain =
+        !text.empty() &&
+        text.find_first_not_of(
+            "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_-+=./,:@%") ==
+            std::string::npos;
     if (plain) return text;
     std::string word = "'";
     for (const char c : text) word += c == '\'' ? std::string("'\\''") : std::string(1, c);
@@ -49,8 +55,8 @@ std::string shellWord(const std::string& text) {
 }
 
 Session::Session(Scene& scene, Renderer& renderer, Messages& messages, const EditorOptions& options)
-    : scene_(scene), renderer_(renderer), messages_(messages), options_(options), sceneFile_(options.render.scene),
-      history_(EditTarget{scene, renderer.settings()}) {
+    : scene_(scene), renderer_(renderer), messages_(messages), options_(options),
+      sceneFile_(options.render.scene), history_(EditTarget{scene, renderer.settings()}) {
     request.width = options.plan.width;
     request.height = options.plan.height;
     request.terms = options.plan.terms;
@@ -59,10 +65,12 @@ Session::Session(Scene& scene, Renderer& renderer, Messages& messages, const Edi
     request.converge = options.converge;
 }
 
-Outcome Session::open(Scene& scene, Renderer& renderer, Messages& messages, const EditorOptions& options, std::unique_ptr<Session>& session) {
+Outcome Session::open(Scene& scene, Renderer& renderer, Messages& messages,
+                      const EditorOptions& options, std::unique_ptr<Session>& session) {
     std::unique_ptr<Session> opened(new Session(scene, renderer, messages, options));
     if (Outcome done = opened->applyOptions(); !done.ok()) return done;
-    if (const Result<void> set = renderer.setScene(scene); !set.ok()) return wrongInput(set.message());
+    if (const Result<void> set = renderer.setScene(scene); !set.ok())
+        return wrongInput(set.message());
     session = std::move(opened);
     return {};
 }
@@ -79,15 +87,19 @@ Outcome Session::assign(const std::string& assignment, const std::string& origin
 Outcome Session::applyOptions() {
     const RenderOptions& render = options_.render;
     for (const std::string& assignment : scene_.settings)
-        if (Outcome done = assign(assignment, fmt::format("'{}': /settings: ", render.scene)); !done.ok()) return done;
+        if (Outcome done = assign(assignment, fmt::format("'{}': /settings: ", render.scene));
+            !done.ok())
+            return done;
     giOfFile_ = request.gi;
     for (const SettingsGroup& group : settings().groups())
-        for (const SettingDesc& field : group.fields) settingsOfFile_[field.key] = settingToText(field, group.values);
+        for (const SettingDesc& field : group.fields)
+            settingsOfFile_[field.key] = settingToText(field, group.values);
     if (options_.plan.quality) settings().applyPreset(*options_.plan.quality);
     for (const std::string& assignment : render.assignments)
         if (Outcome done = assign(assignment, "--set: "); !done.ok()) return done;
     if (!render.gi.empty()) request.gi = render.gi;
-    const Result<FramePlan> plan = makePlan(request.gi, request.terms, renderer_.techniques(), {true, true, true, true});
+    const Result<FramePlan> plan =
+        makePlan(request.gi, request.terms, renderer_.techniques(), {true, true, true, true});
     if (!plan.ok()) return wrongInput("--gi " + request.gi + ": " + plan.message());
 
     if (!render.camera.empty()) {
@@ -95,7 +107,9 @@ Outcome Session::applyOptions() {
         if (!node.ok()) return wrongInput(node.message());
         request.cameraNode = *node;
     } else if (scene_.activeCamera == kNone) {
-        return wrongInput(fmt::format("'{}' has no camera: add a node with a \"camera\" and name it under \"camera\"", render.scene));
+        return wrongInput(fmt::format(
+            "'{}' has no camera: add a node with a \"camera\" and name it under \"camera\"",
+            render.scene));
     }
     if (const std::optional<PoseOption>& pose = options_.plan.pose) {
         dmat4 worldFromCamera = glm::mat4_cast(pose->rotation);
@@ -124,7 +138,9 @@ CameraController& Session::freeCamera() {
     return camera_;
 }
 
-const Camera& Session::lens() const { return scene_.cameras.at(size_t(scene_.nodes.at(size_t(cameraNode())).camera)); }
+const Camera& Session::lens() const {
+    return scene_.cameras.at(size_t(scene_.nodes.at(size_t(cameraNode())).camera));
+}
 
 void Session::frameSelection() {
     Bounds bounds = selected != kNone ? boundsBelow(scene_, selected) : scene_.worldBounds();
@@ -153,10 +169,13 @@ void Session::saveScreenshot(const std::string& path) {
 }
 
 void Session::saveExr(const std::string& path) {
-    if (!picture_.result() || !picture_.failure().empty()) return log::error("the last frame failed, so there are no linear values to write");
+    if (!picture_.result() || !picture_.failure().empty())
+        return log::error("the last frame failed, so there are no linear values to write");
     const Image beauty = renderer_.readBeauty();
     const ImageLayer layer{"", beauty};
-    const Result<void> written = writeExr(path, std::span(&layer, 1), {{"tyndall.command", captureLine()}, {"tyndall.version", TYNDALL_VERSION}});
+    const Result<void> written =
+        writeExr(path, std::span(&layer, 1),
+                 {{"tyndall.command", captureLine()}, {"tyndall.version", TYNDALL_VERSION}});
     written.ok() ? log::info("wrote " + path) : log::error(written.message());
 }
 
@@ -171,17 +190,21 @@ void Session::saveScene(const std::string& path) {
 std::string Session::captureLine() const {
     std::string line = "tyndall capture " + shellWord(sceneFile_);
     line += fmt::format(" --size {}x{}", request.width, request.height);
-    if (request.cameraNode != kNone) line += " --camera " + shellWord(scene_.nodes[size_t(request.cameraNode)].name);
+    if (request.cameraNode != kNone)
+        line += " --camera " + shellWord(scene_.nodes[size_t(request.cameraNode)].name);
     // With '=', since a number may begin with a minus.
     if (free_) line += " --pose=" + poseText({camera_.position(), camera_.rotation(), yfov_});
     if (request.gi != giOfFile_) line += " --gi " + shellWord(request.gi);
     if (request.terms != kAllTerms) line += " --terms " + termNames(request.terms);
-    for (const std::string& plugin : options_.render.plugins) line += " --plugin " + shellWord(plugin);
+    for (const std::string& plugin : options_.render.plugins)
+        line += " --plugin " + shellWord(plugin);
     for (const SettingsGroup& group : renderer_.settings().groups())
         for (const SettingDesc& field : group.fields) {
             const std::string key = field.key, text = settingToText(field, group.values);
             const auto before = settingsOfFile_.find(key);
-            if (!key.starts_with("inspect.") && before != settingsOfFile_.end() && before->second != text) line += " --set " + shellWord(key + "=" + text);
+            if (!key.starts_with("inspect.") && before != settingsOfFile_.end() &&
+                before->second != text)
+                line += " --set " + shellWord(key + "=" + text);
         }
     if (request.time != 0) line += fmt::format(" --time {}", request.time);
     if (request.seed != 0) line += fmt::format(" --seed {}", request.seed);

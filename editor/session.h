@@ -16,7 +16,8 @@ namespace tyndall::editor {
 class Session {
 public:
     /// `scene` and `renderer` outlive the session. Settings of the scene file, preset and `--set` are applied in that order.
-    static Outcome open(Scene& scene, Renderer& renderer, Messages& messages, const EditorOptions& options, std::unique_ptr<Session>& session);
+    static Outcome open(Scene& scene, Renderer& renderer, Messages& messages,
+                        const EditorOptions& options, std::unique_ptr<Session>& session);
 
     [[nodiscard]] Scene& scene() { return scene_; }
     [[nodiscard]] Renderer& renderer() { return renderer_; }
@@ -29,9 +30,10 @@ public:
     void edit(CommandPtr command) { history_.perform(std::move(command)); }
 
     // --- what is looked at ---
-    int selected = kNone;            // node
-    FrameRequest request;            // size, terms, technique, resource shown; the pose is filled in by update()
-    int reduction = 1;               // the picture has this part of the pane's pixels along each side
+    int selected = kNone; // node
+    FrameRequest
+        request;       // size, terms, technique, resource shown; the pose is filled in by update()
+    int reduction = 1; // the picture has this part of the pane's pixels along each side
     /// Looks through a camera of the scene again.
     void lookThrough(int cameraNode);
     /// The free camera, which starts where the picture is seen from now.
@@ -56,7 +58,9 @@ private:
     Session(Scene& scene, Renderer& renderer, Messages& messages, const EditorOptions& options);
     Outcome applyOptions();
     Outcome assign(const std::string& assignment, const std::string& origin);
-    [[nodiscard]] int cameraNode() const { return request.cameraNode != kNone ? request.cameraNode : scene_.activeCamera; }
+    [[nodiscard]] int cameraNode() const {
+        return request.cameraNode != kNone ? request.cameraNode : scene_.activeCamera;
+    }
     [[nodiscard]] double sceneSize() const;
 
     Scene& scene_;
@@ -68,7 +72,7 @@ private:
     LivePicture picture_;
     CameraController camera_;
     bool free_ = false;
-    std::optional<double> yfov_;                 // of --pose
+    std::optional<double> yfov_;                        // of --pose
     std::map<std::string, std::string> settingsOfFile_; // key → text after the scene's own settings
     std::string giOfFile_ = "auto";
 };

@@ -19,11 +19,14 @@ namespace {
 constexpr float kFontPixels = 15;
 constexpr const char* kFont = "/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf";
 // Latin, Greek and what formulas and units use; pairs of first and last, ended by zero.
-constexpr ImWchar kLetters[] = {0x20, 0xff, 0x391, 0x3c9, 0x2010, 0x2026, 0x2070, 0x2089, 0x2190, 0x2193, 0x2212, 0x2212, 0x2248, 0x2265, 0};
+constexpr ImWchar kLetters[] = {0x20,   0xff,   0x391,  0x3c9,  0x2010, 0x2026, 0x2070, 0x2089,
+                                0x2190, 0x2193, 0x2212, 0x2212, 0x2248, 0x2265, 0};
 
 void setColors(ImGuiStyle& style) {
     ImGui::StyleColorsDark(&style);
-    const auto grey = [](float value, float alpha = 1) { return ImVec4(value, value, value + 0.006f, alpha); };
+    const auto grey = [](float value, float alpha = 1) {
+        return ImVec4(value, value, value + 0.006f, alpha);
+    };
     const ImVec4 accent(0.29f, 0.45f, 0.62f, 1), bright(0.36f, 0.55f, 0.75f, 1);
     ImVec4* colors = style.Colors;
     colors[ImGuiCol_Text] = grey(0.88f);
@@ -71,16 +74,20 @@ std::string layoutFile() {
     const char* config = std::getenv("XDG_CONFIG_HOME");
     const char* home = std::getenv("HOME");
     fs::path folder;
-    if (config && *config) folder = config;
-    else if (home && *home) folder = fs::path(home) / ".config";
-    else return {};
+    if (config && *config)
+        folder = config;
+    else if (home && *home)
+        folder = fs::path(home) / ".config";
+    else
+        return {};
     folder /= "tyndall";
     std::error_code error;
     fs::create_directories(folder, error);
     return error ? std::string() : (folder / "imgui.ini").string();
 }
 
-UserInterface::UserInterface(gl::Window& window, bool keepLayout) : layoutFile_(keepLayout ? layoutFile() : std::string()) {
+UserInterface::UserInterface(gl::Window& window, bool keepLayout)
+    : layoutFile_(keepLayout ? layoutFile() : std::string()) {
     IMGUI_CHECKVERSION();
     ImGui::CreateContext();
     ImGuiIO& io = ImGui::GetIO();

@@ -10,8 +10,7 @@
 namespace tyndall::editor {
 namespace {
 
-template <typename T>
-T valueOf(const SettingDesc& field, const void* values) {
+template <typename T> T valueOf(const SettingDesc& field, const void* values) {
     T value;
     std::memcpy(&value, static_cast<const char*>(values) + field.offset, sizeof value);
     return value;
@@ -36,7 +35,9 @@ bool integer(const SettingDesc& field, const void* values, std::string& changed)
     const int least = int(field.minimum), most = int(field.maximum);
     const std::string format = fmt::format("%d {}", field.unit);
     const float speed = std::max(0.05f, float(most - least) / 2000);
-    if (!ImGui::DragInt("##value", &value, speed, least, most, format.c_str(), ImGuiSliderFlags_AlwaysClamp)) return false;
+    if (!ImGui::DragInt("##value", &value, speed, least, most, format.c_str(),
+                        ImGuiSliderFlags_AlwaysClamp))
+        return false;
     changed = std::to_string(value);
     return true;
 }
@@ -47,8 +48,10 @@ bool real(const SettingDesc& field, const void* values, std::string& changed) {
     // Ranges that span decades are dragged by ratio.
     const bool wide = field.minimum >= 0 && field.maximum > 100 * std::max(field.minimum, 1e-30);
     const float speed = std::max(std::abs(value), wide ? 1e-4f : 0.01f) / 100;
-    const std::string format = fmt::format("%.4g {}", std::strcmp(field.unit, "%") == 0 ? "%%" : field.unit);
-    if (!ImGui::DragFloat("##value", &value, speed, least, most, format.c_str(), ImGuiSliderFlags_AlwaysClamp | ImGuiSliderFlags_NoRoundToFormat))
+    const std::string format =
+        fmt::format("%.4g {}", std::strcmp(field.unit, "%") == 0 ? "%%" : field.unit);
+    if (!ImGui::DragFloat("##value", &value, speed, least, most, format.c_str(),
+                          ImGuiSliderFlags_AlwaysClamp | ImGuiSliderFlags_NoRoundToFormat))
         return false;
     changed = fmt::format("{}", value);
     return true;
@@ -56,7 +59,9 @@ bool real(const SettingDesc& field, const void* values, std::string& changed) {
 
 } // namespace
 
-void text(const std::string& value) { ImGui::TextUnformatted(value.data(), value.data() + value.size()); }
+void text(const std::string& value) {
+    ImGui::TextUnformatted(value.data(), value.data() + value.size());
+}
 
 void coloredText(const ImVec4& color, const std::string& value) {
     ImGui::PushStyleColor(ImGuiCol_Text, color);
@@ -73,7 +78,8 @@ void tooltip(const std::string& value) {
     ImGui::EndTooltip();
 }
 
-bool settingWidget(const SettingDesc& field, const void* values, float width, std::string& changed) {
+bool settingWidget(const SettingDesc& field, const void* values, float width,
+                   std::string& changed) {
     ImGui::SetNextItemWidth(width);
     switch (field.type) {
     case SettingType::Bool: return checkbox(field, values, changed);
@@ -91,7 +97,10 @@ std::string byteText(uint64_t bytes) {
 }
 
 bool contains(const std::string& text, const std::string& needle) {
-    const auto same = [](char a, char b) { return std::tolower(static_cast<unsigned char>(a)) == std::tolower(static_cast<unsigned char>(b)); };
+    const auto same = [](char a, char b) {
+        return std::tolower(static_cast<unsigned char>(a)) ==
+               std::tolower(static_cast<unsigned char>(b));
+    };
     return std::search(text.begin(), text.end(), needle.begin(), needle.end(), same) != text.end();
 }
 

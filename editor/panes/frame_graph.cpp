@@ -12,7 +12,8 @@ namespace {
 std::string describe(const fg::CompiledResource& resource) {
     if (resource.isBuffer) return "buffer";
     const fg::TextureDesc& desc = resource.texture;
-    std::string result = fmt::format("{} {} x {}", fg::formatName(desc.format), desc.width, desc.height);
+    std::string result =
+        fmt::format("{} {} x {}", fg::formatName(desc.format), desc.width, desc.height);
     if (desc.kind != fg::TextureKind::Tex2D) result += fmt::format(" x {}", desc.depth);
     return desc.mips > 1 ? fmt::format("{}, {} levels", result, desc.mips) : result;
 }
@@ -20,15 +21,19 @@ std::string describe(const fg::CompiledResource& resource) {
 void drawResource(Session& session, const fg::CompiledGraph& graph, size_t index) {
     const fg::CompiledResource& resource = graph.resources[index];
     const std::string name(resource.name);
-    const bool showable = !resource.isBuffer && resource.used && !fg::isIntegerFormat(resource.texture.format);
+    const bool showable =
+        !resource.isBuffer && resource.used && !fg::isIntegerFormat(resource.texture.format);
     ImGui::TableNextRow();
     ImGui::TableNextColumn();
     ImGui::PushID(int(index));
     if (!showable) ImGui::PushStyleColor(ImGuiCol_Text, kGrey);
     const bool shown = !name.empty() && session.request.inspect == name;
-    if (ImGui::Selectable(name.c_str(), shown, ImGuiSelectableFlags_SpanAllColumns) && showable) session.request.inspect = shown ? "" : name;
+    if (ImGui::Selectable(name.c_str(), shown, ImGuiSelectableFlags_SpanAllColumns) && showable)
+        session.request.inspect = shown ? "" : name;
     tooltip(showable ? shown ? "Click to see the picture again" : "Click to see it in the viewport"
-            : resource.isBuffer ? "A buffer is not a picture" : resource.used ? "Integers are not shown as a picture" : "No pass of this frame used it");
+            : resource.isBuffer ? "A buffer is not a picture"
+            : resource.used     ? "Integers are not shown as a picture"
+                                : "No pass of this frame used it");
     ImGui::TableNextColumn();
     text(describe(resource));
     ImGui::TableNextColumn();
@@ -50,7 +55,8 @@ void drawInspectSettings(Session& session) {
             ImGui::SameLine();
             std::string changed;
             if (settingWidget(field, group.values, ImGui::GetFontSize() * 5, changed))
-                session.edit(changeSettings(session.settings(), fmt::format("set {}", field.key), {{field.key, changed}}));
+                session.edit(changeSettings(session.settings(), fmt::format("set {}", field.key),
+                                            {{field.key, changed}}));
             tooltip(field.help);
             ImGui::PopID();
             ImGui::SameLine(0, ImGui::GetFontSize());
@@ -63,11 +69,13 @@ void drawResources(Session& session) {
     const fg::CompiledGraph& graph = session.renderer().graph();
     if (session.request.inspect.empty()) {
         ImGui::SetNextItemWidth(-1);
-        ImGui::InputTextWithHint("##filter", "find a resource; click a texture to see it in the viewport", &filter);
+        ImGui::InputTextWithHint(
+            "##filter", "find a resource; click a texture to see it in the viewport", &filter);
     } else {
         drawInspectSettings(session);
     }
-    const ImGuiTableFlags flags = ImGuiTableFlags_ScrollY | ImGuiTableFlags_RowBg | ImGuiTableFlags_Resizable;
+    const ImGuiTableFlags flags =
+        ImGuiTableFlags_ScrollY | ImGuiTableFlags_RowBg | ImGuiTableFlags_Resizable;
     if (!ImGui::BeginTable("resources", 4, flags)) return;
     ImGui::TableSetupScrollFreeze(0, 1);
     ImGui::TableSetupColumn("resource", ImGuiTableColumnFlags_WidthStretch, 3);
@@ -91,7 +99,8 @@ void drawUses(const fg::CompiledGraph& graph, const fg::CompiledPass& pass) {
 
 void drawPasses(Session& session) {
     const fg::CompiledGraph& graph = session.renderer().graph();
-    coloredText(kGrey, fmt::format("{} of transient resources in {} slots, {} if none were shared", byteText(graph.pooledBytes()), graph.slots.size(),
+    coloredText(kGrey, fmt::format("{} of transient resources in {} slots, {} if none were shared",
+                                   byteText(graph.pooledBytes()), graph.slots.size(),
                                    byteText(graph.unpooledBytes())));
     ImGui::BeginChild("passes");
     for (size_t i = 0; i < graph.passes.size(); ++i) {
@@ -101,7 +110,8 @@ void drawPasses(Session& session) {
         if (!ran) label += fmt::format("   {}: {}", fg::statusName(pass.status), pass.reason);
         ImGui::PushID(int(i));
         if (!ran) ImGui::PushStyleColor(ImGuiCol_Text, kGrey);
-        const bool open = ImGui::TreeNodeEx("##pass", ImGuiTreeNodeFlags_SpanAvailWidth, "%s", label.c_str());
+        const bool open =
+            ImGui::TreeNodeEx("##pass", ImGuiTreeNodeFlags_SpanAvailWidth, "%s", label.c_str());
         if (!ran) ImGui::PopStyleColor();
         if (open) {
             drawUses(graph, pass);

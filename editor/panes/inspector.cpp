@@ -26,23 +26,29 @@ void label(const char* name, const std::string& help) {
 /// A table of names and values, in which the names take what they need.
 bool beginFields(const char* id) {
     if (!ImGui::BeginTable(id, 2)) return false;
-    ImGui::TableSetupColumn("name", ImGuiTableColumnFlags_WidthFixed, ImGui::CalcTextSize("Absorption ").x);
+    ImGui::TableSetupColumn("name", ImGuiTableColumnFlags_WidthFixed,
+                            ImGui::CalcTextSize("Absorption ").x);
     ImGui::TableSetupColumn("value", ImGuiTableColumnFlags_WidthStretch);
     return true;
 }
 
-bool dragPoint(const char* name, const std::string& help, dvec3& value, float speed, const char* format) {
+bool dragPoint(const char* name, const std::string& help, dvec3& value, float speed,
+               const char* format) {
     label(name, help);
-    const bool changed = ImGui::DragScalarN("##value", ImGuiDataType_Double, glm::value_ptr(value), 3, speed, nullptr, nullptr, format);
+    const bool changed = ImGui::DragScalarN("##value", ImGuiDataType_Double, glm::value_ptr(value),
+                                            3, speed, nullptr, nullptr, format);
     ImGui::PopID();
     return changed;
 }
 
 /// Dragged by ratio, since lights and media span decades.
-bool dragNumber(const char* name, const std::string& help, float& value, float least, float most, const char* format) {
+bool dragNumber(const char* name, const std::string& help, float& value, float least, float most,
+                const char* format) {
     label(name, help);
     const float speed = std::max(std::abs(value), 1e-4f) / 100;
-    const bool changed = ImGui::DragFloat("##value", &value, speed, least, most, format, ImGuiSliderFlags_AlwaysClamp | ImGuiSliderFlags_NoRoundToFormat);
+    const bool changed =
+        ImGui::DragFloat("##value", &value, speed, least, most, format,
+                         ImGuiSliderFlags_AlwaysClamp | ImGuiSliderFlags_NoRoundToFormat);
     ImGui::PopID();
     return changed;
 }
@@ -50,7 +56,9 @@ bool dragNumber(const char* name, const std::string& help, float& value, float l
 bool dragColor(const char* name, const std::string& help, vec3& value, const char* format) {
     label(name, help);
     const float speed = std::max(maximumOf(value), 1e-3f) / 100;
-    const bool changed = ImGui::DragFloat3("##value", glm::value_ptr(value), speed, 0, 1e9f, format, ImGuiSliderFlags_AlwaysClamp | ImGuiSliderFlags_NoRoundToFormat);
+    const bool changed =
+        ImGui::DragFloat3("##value", glm::value_ptr(value), speed, 0, 1e9f, format,
+                          ImGuiSliderFlags_AlwaysClamp | ImGuiSliderFlags_NoRoundToFormat);
     ImGui::PopID();
     return changed;
 }
@@ -59,39 +67,48 @@ void drawTransform(Session& session, int index) {
     const Node& node = session.scene().nodes[size_t(index)];
     if (node.matrix) {
         coloredText(kGrey, "Placed by a matrix");
-        tooltip("The file gives this node a matrix instead of translation, rotation and scale; it is kept as it is.");
+        tooltip(
+            "The file gives this node a matrix instead of translation, rotation and scale; it is kept as it is.");
         return;
     }
     if (!beginFields("transform")) return;
     dvec3 translation = node.translation, scale = node.scale;
     dvec3 turned = glm::eulerAngles(node.rotation) * kDegrees;
-    const double size = std::max({std::abs(translation.x), std::abs(translation.y), std::abs(translation.z), 1.0});
-    bool changed = dragPoint("Position", "Metres, in the space of the node above", translation, float(size * 0.005), "%.3f");
+    const double size =
+        std::max({std::abs(translation.x), std::abs(translation.y), std::abs(translation.z), 1.0});
+    bool changed = dragPoint("Position", "Metres, in the space of the node above", translation,
+                             float(size * 0.005), "%.3f");
     dquat rotation = node.rotation;
     if (dragPoint("Rotation", "Degrees about X, then Y, then Z", turned, 0.25f, "%.2f")) {
         rotation = glm::normalize(dquat(turned / kDegrees));
         changed = true;
     }
     changed |= dragPoint("Scale", "Factor along each axis", scale, 0.005f, "%.3f");
-    if (changed) session.edit(changeTransform(session.scene(), index, translation, rotation, scale));
+    if (changed)
+        session.edit(changeTransform(session.scene(), index, translation, rotation, scale));
     ImGui::EndTable();
 }
 
 void drawLight(Session& session, int index) {
-    static constexpr const char* kTypes[] = {"Directional light", "Point light", "Spot light", "Rect light"};
+    static constexpr const char* kTypes[] = {"Directional light", "Point light", "Spot light",
+                                             "Rect light"};
     Light light = session.scene().lights[size_t(index)];
     ImGui::Separator();
     text(kTypes[int(light.type)]);
     if (!beginFields("light")) return;
     bool changed = false;
     if (light.type == LightType::Rect) {
-        changed |= dragColor("Radiance", "Nits that leave it, red, green and blue", light.radiance, "%.4g");
+        changed |= dragColor("Radiance", "Nits that leave it, red, green and blue", light.radiance,
+                             "%.4g");
     } else {
         changed |= dragColor("Colour", "Linear, multiplies the intensity", light.color, "%.3f");
         const bool sun = light.type == LightType::Directional;
-        changed |= dragNumber("Intensity", sun ? "Lux on a surface that faces it" : "Candela", light.intensity, 0, 1e12f, sun ? "%.4g lx" : "%.4g cd");
-        changed |= dragNumber("Radius", sun ? "Angular radius, for soft shadows" : "Of the glowing sphere, for soft shadows", light.radius, 0, sun ? 1.5f : 1e6f,
-                              sun ? "%.4f rad" : "%.3f m");
+        changed |= dragNumber("Intensity", sun ? "Lux on a surface that faces it" : "Candela",
+                              light.intensity, 0, 1e12f, sun ? "%.4g lx" : "%.4g cd");
+        changed |= dragNumber("Radius",
+                              sun ? "Angular radius, for soft shadows"
+                                  : "Of the glowing sphere, for soft shadows",
+                              light.radius, 0, sun ? 1.5f : 1e6f, sun ? "%.4f rad" : "%.3f m");
     }
     label("Shadows", "Does it cast shadows?");
     changed |= ImGui::Checkbox("##value", &light.castsShadows);
@@ -101,16 +118,24 @@ void drawLight(Session& session, int index) {
 }
 
 void drawMedium(Session& session, int index) {
-    static constexpr const char* kKinds[] = {"Medium everywhere", "Medium in a box", "Medium in an ellipsoid", "Height fog", "Medium from a grid", "Medium from particles"};
+    static constexpr const char* kKinds[] = {"Medium everywhere",      "Medium in a box",
+                                             "Medium in an ellipsoid", "Height fog",
+                                             "Medium from a grid",     "Medium from particles"};
     Medium medium = session.scene().media[size_t(index)];
     ImGui::Separator();
     text(kKinds[int(medium.kind)]);
-    if (!medium.file.empty()) coloredText(kGrey, medium.file + (medium.gridName.empty() ? "" : ", grid '" + medium.gridName + "'"));
+    if (!medium.file.empty())
+        coloredText(kGrey, medium.file +
+                               (medium.gridName.empty() ? "" : ", grid '" + medium.gridName + "'"));
     if (!beginFields("medium")) return;
-    bool changed = dragColor("Scattering", "Per metre, red, green and blue; a grid multiplies it", medium.scattering, "%.4g");
-    changed |= dragColor("Absorption", "Per metre, red, green and blue; a grid multiplies it", medium.absorption, "%.4g");
-    label("Anisotropy", "Mean cosine of scattering: positive goes on forwards, negative is thrown back");
-    changed |= ImGui::SliderFloat("##value", &medium.anisotropy, -0.95f, 0.95f, "%.2f", ImGuiSliderFlags_AlwaysClamp);
+    bool changed = dragColor("Scattering", "Per metre, red, green and blue; a grid multiplies it",
+                             medium.scattering, "%.4g");
+    changed |= dragColor("Absorption", "Per metre, red, green and blue; a grid multiplies it",
+                         medium.absorption, "%.4g");
+    label("Anisotropy",
+          "Mean cosine of scattering: positive goes on forwards, negative is thrown back");
+    changed |= ImGui::SliderFloat("##value", &medium.anisotropy, -0.95f, 0.95f, "%.2f",
+                                  ImGuiSliderFlags_AlwaysClamp);
     ImGui::PopID();
     changed |= dragColor("Emission", "Nits per metre", medium.emission, "%.4g");
     ImGui::EndTable();
@@ -136,8 +161,10 @@ void drawInspector(Session& session) {
     if (node.medium != kNone) drawMedium(session, node.medium);
     if (!node.meshes.empty()) {
         size_t triangles = 0;
-        for (const int mesh : node.meshes) triangles += session.scene().meshes[size_t(mesh)].indices.size() / 3;
-        coloredText(kGrey, fmt::format("{} mesh{}, {} triangles", node.meshes.size(), node.meshes.size() == 1 ? "" : "es", triangles));
+        for (const int mesh : node.meshes)
+            triangles += session.scene().meshes[size_t(mesh)].indices.size() / 3;
+        coloredText(kGrey, fmt::format("{} mesh{}, {} triangles", node.meshes.size(),
+                                       node.meshes.size() == 1 ? "" : "es", triangles));
     }
     ImGui::PopID();
 }

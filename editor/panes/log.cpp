@@ -31,7 +31,9 @@ void drawLog(Session& session) {
     ImGui::BeginChild("messages");
     ImGui::PushTextWrapPos(0);
     for (const Messages::Entry& entry : entries)
-        coloredText(colorOf(entry.level), entry.count > 1 ? fmt::format("{} ({} times)", entry.text, entry.count) : entry.text);
+        coloredText(colorOf(entry.level),
+                    entry.count > 1 ? fmt::format("{} ({} times)", entry.text, entry.count)
+                                    : entry.text);
     ImGui::PopTextWrapPos();
     static size_t seen = 0; // follow new messages
     if (messages.total() != seen) ImGui::SetScrollHereY(1);

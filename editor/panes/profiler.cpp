@@ -20,14 +20,16 @@ void drawPass(const fg::PassReport& pass, double largest) {
     if (ran) {
         const float share = pass.gpuMs > 0 && largest > 0 ? float(pass.gpuMs / largest) : 0;
         ImGui::PushStyleColor(ImGuiCol_PlotHistogram, ImVec4(0.29f, 0.45f, 0.62f, 1));
-        ImGui::ProgressBar(share, {-1, ImGui::GetTextLineHeight()}, milliseconds(pass.gpuMs).c_str());
+        ImGui::ProgressBar(share, {-1, ImGui::GetTextLineHeight()},
+                           milliseconds(pass.gpuMs).c_str());
         ImGui::PopStyleColor();
     }
     ImGui::TableNextColumn();
     if (ran) text(milliseconds(pass.cpuMs));
     ImGui::TableNextColumn();
     if (!ran) {
-        const std::string saved = pass.savedMs >= 0 ? fmt::format(" (saves {:.2f} ms)", pass.savedMs) : "";
+        const std::string saved =
+            pass.savedMs >= 0 ? fmt::format(" (saves {:.2f} ms)", pass.savedMs) : "";
         text(fmt::format("{}: {}{}", fg::statusName(pass.status), pass.reason, saved));
         tooltip(std::string(pass.reason));
     }
@@ -39,12 +41,14 @@ void drawPass(const fg::PassReport& pass, double largest) {
 void drawProfiler(Session& session) {
     const fg::FrameReport& report = session.renderer().report();
     const bool measured = report.gpuMs >= 0;
-    text(fmt::format("GPU {} ms   CPU {:.2f} ms   {} on the GPU   {} barriers", measured ? fmt::format("{:.2f}", report.gpuMs) : "-", report.cpuMs,
+    text(fmt::format("GPU {} ms   CPU {:.2f} ms   {} on the GPU   {} barriers",
+                     measured ? fmt::format("{:.2f}", report.gpuMs) : "-", report.cpuMs,
                      byteText(report.gpuBytes), report.barriers));
     double largest = 0;
     for (const fg::PassReport& pass : report.passes)
         if (pass.status == fg::PassStatus::Ran) largest = std::max(largest, pass.gpuMs);
-    const ImGuiTableFlags flags = ImGuiTableFlags_ScrollY | ImGuiTableFlags_RowBg | ImGuiTableFlags_Resizable | ImGuiTableFlags_BordersInnerV;
+    const ImGuiTableFlags flags = ImGuiTableFlags_ScrollY | ImGuiTableFlags_RowBg |
+                                  ImGuiTableFlags_Resizable | ImGuiTableFlags_BordersInnerV;
     if (!ImGui::BeginTable("passes", 4, flags)) return;
     ImGui::TableSetupScrollFreeze(0, 1);
     ImGui::TableSetupColumn("pass", ImGuiTableColumnFlags_WidthStretch, 3);

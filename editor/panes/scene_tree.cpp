@@ -20,10 +20,12 @@ const char* kindOf(const Node& node) {
 
 class Tree {
 public:
-    explicit Tree(Session& session, const std::string& filter) : session_(session), filter_(filter), children_(session.scene().nodes.size()) {
+    explicit Tree(Session& session, const std::string& filter)
+        : session_(session), filter_(filter), children_(session.scene().nodes.size()) {
         const std::vector<Node>& nodes = session.scene().nodes;
         for (size_t i = 0; i < nodes.size(); ++i)
-            nodes[i].parent == kNone ? roots_.push_back(int(i)) : children_[size_t(nodes[i].parent)].push_back(int(i));
+            nodes[i].parent == kNone ? roots_.push_back(int(i))
+                                     : children_[size_t(nodes[i].parent)].push_back(int(i));
     }
     void draw() {
         // A filter shows what matches as a flat list.
@@ -31,7 +33,9 @@ public:
             for (const int root : roots_) drawNode(root);
         else
             for (size_t i = 0; i < children_.size(); ++i)
-                if (contains(session_.scene().nodes[i].name, filter_) || contains(kindOf(session_.scene().nodes[i]), filter_)) drawRow(int(i), true);
+                if (contains(session_.scene().nodes[i].name, filter_) ||
+                    contains(kindOf(session_.scene().nodes[i]), filter_))
+                    drawRow(int(i), true);
     }
 
 private:
@@ -47,14 +51,18 @@ private:
         ImGui::TableNextColumn();
         ImGui::PushID(index);
         bool visible = node.visible;
-        if (ImGui::Checkbox("##visible", &visible)) session_.edit(changeVisibility(session_.scene(), index, visible));
-        tooltip(visible ? "Shown; click to hide it and what is below it" : "Hidden; click to show it");
+        if (ImGui::Checkbox("##visible", &visible))
+            session_.edit(changeVisibility(session_.scene(), index, visible));
+        tooltip(visible ? "Shown; click to hide it and what is below it"
+                        : "Hidden; click to show it");
         ImGui::TableNextColumn();
-        ImGuiTreeNodeFlags flags = ImGuiTreeNodeFlags_OpenOnArrow | ImGuiTreeNodeFlags_SpanAvailWidth;
+        ImGuiTreeNodeFlags flags =
+            ImGuiTreeNodeFlags_OpenOnArrow | ImGuiTreeNodeFlags_SpanAvailWidth;
         if (leaf) flags |= ImGuiTreeNodeFlags_Leaf | ImGuiTreeNodeFlags_NoTreePushOnOpen;
         if (session_.selected == index) flags |= ImGuiTreeNodeFlags_Selected;
         if (!node.visible) ImGui::PushStyleColor(ImGuiCol_Text, kGrey);
-        const bool open = ImGui::TreeNodeEx("##node", flags, "%s", node.name.empty() ? "(no name)" : node.name.c_str());
+        const bool open = ImGui::TreeNodeEx("##node", flags, "%s",
+                                            node.name.empty() ? "(no name)" : node.name.c_str());
         if (!node.visible) ImGui::PopStyleColor();
         if (ImGui::IsItemClicked() && !ImGui::IsItemToggledOpen()) session_.selected = index;
         ImGui::TableNextColumn();
@@ -78,7 +86,8 @@ void drawSceneTree(Session& session) {
     if (!ImGui::BeginTable("nodes", 3, ImGuiTableFlags_ScrollY | ImGuiTableFlags_RowBg)) return;
     ImGui::TableSetupColumn("visible", ImGuiTableColumnFlags_WidthFixed, ImGui::GetFrameHeight());
     ImGui::TableSetupColumn("name", ImGuiTableColumnFlags_WidthStretch);
-    ImGui::TableSetupColumn("kind", ImGuiTableColumnFlags_WidthFixed, ImGui::CalcTextSize("medium").x);
+    ImGui::TableSetupColumn("kind", ImGuiTableColumnFlags_WidthFixed,
+                            ImGui::CalcTextSize("medium").x);
     Tree(session, filter).draw();
     ImGui::EndTable();
 }

@@ -24,7 +24,8 @@ std::string defaultText(const SettingDesc& field) {
 std::string helpText(const SettingDesc& field) {
     std::string help = fmt::format("{}\n{}", field.help, field.key);
     if (field.type == SettingType::Int || field.type == SettingType::Float)
-        help += fmt::format("\n{:g} to {:g}{}{}", field.minimum, field.maximum, *field.unit ? " " : "", field.unit);
+        help += fmt::format("\n{:g} to {:g}{}{}", field.minimum, field.maximum,
+                            *field.unit ? " " : "", field.unit);
     return help + "\nDefault: " + defaultText(field);
 }
 
@@ -40,9 +41,11 @@ std::vector<Room> roomsOf(const SettingsRegistry& settings, const std::string& f
     for (const SettingsGroup& group : settings.groups())
         for (const SettingDesc& field : group.fields) {
             if (!contains(field.key, filter) && !contains(field.name, filter)) continue;
-            std::string title(std::string_view(field.key).substr(0, std::string_view(field.key).find('.')));
+            std::string title(
+                std::string_view(field.key).substr(0, std::string_view(field.key).find('.')));
             title[0] = char(std::toupper(static_cast<unsigned char>(title[0])));
-            auto room = std::find_if(rooms.begin(), rooms.end(), [&](const Room& known) { return known.title == title; });
+            auto room = std::find_if(rooms.begin(), rooms.end(),
+                                     [&](const Room& known) { return known.title == title; });
             if (room == rooms.end()) room = rooms.insert(room, {title, {}});
             room->fields.emplace_back(&field, group.values);
         }
@@ -61,13 +64,17 @@ void drawSetting(Session& session, const SettingDesc& field, const void* values)
     ImGui::TableNextColumn();
     const float button = ImGui::GetFrameHeight() + ImGui::GetStyle().ItemInnerSpacing.x;
     std::string changed;
-    if (settingWidget(field, values, ImGui::GetContentRegionAvail().x - button, changed) && changed != now)
-        session.edit(changeSettings(session.settings(), fmt::format("set {}", field.key), {{field.key, changed}}));
+    if (settingWidget(field, values, ImGui::GetContentRegionAvail().x - button, changed) &&
+        changed != now)
+        session.edit(changeSettings(session.settings(), fmt::format("set {}", field.key),
+                                    {{field.key, changed}}));
     tooltip(helpText(field));
     if (changedBefore) {
-        ImGui::SameLine(ImGui::GetCursorPosX() + ImGui::GetContentRegionAvail().x - ImGui::GetFrameHeight());
+        ImGui::SameLine(ImGui::GetCursorPosX() + ImGui::GetContentRegionAvail().x -
+                        ImGui::GetFrameHeight());
         if (ImGui::Button("x", {ImGui::GetFrameHeight(), 0}))
-            session.edit(changeSettings(session.settings(), fmt::format("reset {}", field.key), {{field.key, standard}}));
+            session.edit(changeSettings(session.settings(), fmt::format("reset {}", field.key),
+                                        {{field.key, standard}}));
         tooltip("Back to its default: " + standard);
     }
     ImGui::PopID();
@@ -83,7 +90,8 @@ void drawPresets(Session& session) {
             std::vector<std::pair<std::string, std::string>> assignments;
             for (const PresetEntry& entry : session.settings().presets())
                 if (entry.quality == quality) assignments.emplace_back(entry.key, entry.value);
-            session.edit(changeSettings(session.settings(), "apply the preset " + name, assignments));
+            session.edit(
+                changeSettings(session.settings(), "apply the preset " + name, assignments));
         }
         if (!ImGui::IsItemHovered()) continue;
         std::string entries = "Sets";

@@ -33,7 +33,9 @@ void drawTechniqueChoice(Session& session) {
     };
     offer("auto", "Each term by whoever computes it best.");
     offer("none", "Direct light only.");
-    for (const Technique& technique : session.renderer().techniques()) offer(technique.name, technique.title + ". " + technique.help + " Computes " + termNames(technique.claims) + ".");
+    for (const Technique& technique : session.renderer().techniques())
+        offer(technique.name, technique.title + ". " + technique.help + " Computes " +
+                                  termNames(technique.claims) + ".");
     ImGui::EndCombo();
 }
 
@@ -50,12 +52,18 @@ void drawClaim(Session& session, const FramePlan& plan, Term term) {
     ImGui::AlignTextToFramePadding();
     const int owner = plan.owner[size_t(term)];
     const auto techniques = session.renderer().techniques();
-    if (!(plan.wanted & one)) coloredText(kGrey, "not asked for");
-    else if (!(plan.possible & one)) coloredText(kGrey, "dark in this scene");
-    else if (plan.missing & one) coloredText(kBad, "missing: nobody computes it");
-    else if (owner == kDirectPasses) text("the engine");
-    else if (owner >= 0 && size_t(owner) < techniques.size()) coloredText(kGood, techniques[size_t(owner)].name);
-    else coloredText(kBad, "nobody");
+    if (!(plan.wanted & one))
+        coloredText(kGrey, "not asked for");
+    else if (!(plan.possible & one))
+        coloredText(kGrey, "dark in this scene");
+    else if (plan.missing & one)
+        coloredText(kBad, "missing: nobody computes it");
+    else if (owner == kDirectPasses)
+        text("the engine");
+    else if (owner >= 0 && size_t(owner) < techniques.size())
+        coloredText(kGood, techniques[size_t(owner)].name);
+    else
+        coloredText(kBad, "nobody");
     tooltip(meaning(term));
 }
 
@@ -69,8 +77,10 @@ void drawTechniques(Session& session) {
     ImGui::PushTextWrapPos(0);
     coloredText(kGrey, plan.why);
     ImGui::PopTextWrapPos();
-    if (!ImGui::BeginTable("claims", 2, ImGuiTableFlags_RowBg | ImGuiTableFlags_BordersInnerV)) return;
-    ImGui::TableSetupColumn("term", ImGuiTableColumnFlags_WidthFixed, ImGui::GetFrameHeight() + ImGui::CalcTextSize("LXSSE  ").x);
+    if (!ImGui::BeginTable("claims", 2, ImGuiTableFlags_RowBg | ImGuiTableFlags_BordersInnerV))
+        return;
+    ImGui::TableSetupColumn("term", ImGuiTableColumnFlags_WidthFixed,
+                            ImGui::GetFrameHeight() + ImGui::CalcTextSize("LXSSE  ").x);
     ImGui::TableSetupColumn("computed by", ImGuiTableColumnFlags_WidthStretch);
     ImGui::TableHeadersRow();
     for (uint32_t term = 0; term < kTermCount; ++term) drawClaim(session, plan, Term(term));

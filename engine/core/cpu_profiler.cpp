@@ -10,7 +10,11 @@ namespace {
 const auto kProcessStart = std::chrono::steady_clock::now(); // set while the program is loaded
 }
 
-double processMicroseconds() { return std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - kProcessStart).count(); }
+double processMicroseconds() {
+    return std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() -
+                                                     kProcessStart)
+        .count();
+}
 
 uint64_t peakResidentBytes() {
     rusage usage{};
@@ -18,7 +22,8 @@ uint64_t peakResidentBytes() {
     return uint64_t(usage.ru_maxrss) * 1024; // Linux counts in KiB
 }
 
-void CpuProfiler::record(std::string_view name, double startMicroseconds, double durationMicroseconds) {
+void CpuProfiler::record(std::string_view name, double startMicroseconds,
+                         double durationMicroseconds) {
     const uint64_t thread = std::hash<std::thread::id>()(std::this_thread::get_id());
     const std::lock_guard lock(mutex_);
     const auto known = std::find(threads_.begin(), threads_.end(), thread);

@@ -36,7 +36,8 @@ private:
 /// Records the time from its construction to its destruction. `profiler` may be null.
 class CpuZone {
 public:
-    CpuZone(CpuProfiler* profiler, std::string name) : profiler_(profiler), name_(std::move(name)), start_(processMicroseconds()) {}
+    CpuZone(CpuProfiler* profiler, std::string name)
+        : profiler_(profiler), name_(std::move(name)), start_(processMicroseconds()) {}
     ~CpuZone() {
         if (profiler_) profiler_->record(name_, start_, processMicroseconds() - start_);
     }

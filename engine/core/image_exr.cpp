@@ -59,14 +59,17 @@ private:
     size_t position_ = 0;
 };
 
-const char* channelLetter(int channels, int channel) { return channels == 1 ? "Y" : &"R\0G\0B\0A"[2 * channel]; }
+const char* channelLetter(int channels, int channel) {
+    return channels == 1 ? "Y" : &"R\0G\0B\0A"[2 * channel];
+}
 
 std::string channelName(const ImageLayer& layer, int channel) {
     const std::string letter = channelLetter(layer.image.channels, channel);
     return layer.name.empty() ? letter : layer.name + "." + letter;
 }
 
-std::string encode(std::span<const ImageLayer> layers, const ImageMetadata& metadata, ExrDepth depth) {
+std::string encode(std::span<const ImageLayer> layers, const ImageMetadata& metadata,
+                   ExrDepth depth) {
     const Image& first = layers.front().image;
     Imf::Header header(first.width, first.height);
     header.compression() = Imf::ZIP_COMPRESSION;
@@ -81,7 +84,8 @@ std::string encode(std::span<const ImageLayer> layers, const ImageMetadata& meta
         size_t sampleBytes = sizeof(float);
         if (depth == ExrDepth::Half) {
             std::vector<half>& converted = halves.emplace_back(image.pixels.size());
-            std::transform(image.pixels.begin(), image.pixels.end(), converted.begin(), [](float v) { return half(v); });
+            std::transform(image.pixels.begin(), image.pixels.end(), converted.begin(),
+                           [](float v) { return half(v); });
             base = reinterpret_cast<const char*>(converted.data());
             sampleBytes = sizeof(half);
         }
@@ -89,8 +93,8 @@ std::string encode(std::span<const ImageLayer> layers, const ImageMetadata& meta
             const std::string name = channelName(layer, c);
             header.channels().insert(name, Imf::Channel(type));
             const size_t pixelBytes = sampleBytes * size_t(image.channels);
-            frame.insert(name, Imf::Slice(type, const_cast<char*>(base) + sampleBytes * size_t(c), pixelBytes,
-                                          pixelBytes * size_t(image.width)));
+            frame.insert(name, Imf::Slice(type, const_cast<char*>(base) + sampleBytes * size_t(c),
+                                          pixelBytes, pixelBytes * size_t(image.width)));
         }
     }
     MemoryOutput memory;
@@ -119,16 +123,22 @@ std::vector<Plan> planLayers(const Imf::ChannelList& channels) {
     for (auto it = channels.begin(); it != channels.end(); ++it) {
         const std::string name = it.name();
         const size_t dot = name.rfind('.');
-        byPrefix[dot == std::string::npos ? "" : name.substr(0, dot)].push_back(dot == std::string::npos ? name : name.substr(dot + 1));
+        byPrefix[dot == std::string::npos ? "" : name.substr(0, dot)].push_back(
+            dot == std::string::npos ? name : name.substr(dot + 1));
     }
     std::vector<Plan> plans;
     for (auto& [prefix, letters] : byPrefix) {
-        const auto full = [&prefix = prefix](const std::string& letter) { return prefix.empty() ? letter : prefix + "." + letter; };
+        const auto full = [&prefix = prefix](const std::string& letter) {
+            return prefix.empty() ? letter : prefix + "." + letter;
+        };
         const auto isColor = [](const std::string& letter) { return letterRank(letter) >= 0; };
         std::vector<std::string> color, alone;
-        std::partition_copy(letters.begin(), letters.end(), std::back_inserter(color), std::back_inserter(alone), isColor);
-        std::sort(color.begin(), color.end(), [](const auto& a, const auto& b) { return letterRank(a) < letterRank(b); });
-        const bool isRgb = color.size() >= 3 && color[0] == "R" && color[1] == "G" && color[2] == "B";
+        std::partition_copy(letters.begin(), letters.end(), std::back_inserter(color),
+                            std::back_inserter(alone), isColor);
+        std::sort(color.begin(), color.end(),
+                  [](const auto& a, const auto& b) { return letterRank(a) < letterRank(b); });
+        const bool isRgb =
+            color.size() >= 3 && color[0] == "R" && color[1] == "G" && color[2] == "B";
         if (isRgb) {
             Plan& plan = plans.emplace_back(Plan{prefix, {}});
             for (const std::string& letter : color) plan.channels.push_back(full(letter));
@@ -141,15 +151,20 @@ std::vector<Plan> planLayers(const Imf::ChannelList& channels) {
     return plans; // "" sorts first: the main layer leads
 }
 
-Result<void> checkSize(const std::filesystem::path& path, const Imf::Header& header, size_t fileBytes, size_t channelCount) {
+Result<void> checkSize(const std::filesystem::path& path, const Imf::Header& header,
+                       size_t fileBytes, size_t channelCount) {
     const Imath::Box2i window = header.dataWindow();
-    const int64_t width = int64_t(window.max.x) - window.min.x + 1, height = int64_t(window.max.y) - window.min.y + 1;
+    const int64_t width = int64_t(window.max.x) - window.min.x + 1,
+                  height = int64_t(window.max.y) - window.min.y + 1;
     if (width <= 0 || height <= 0 || uint64_t(width) > kMaxPixels / uint64_t(height))
-        return Error{fmt::format("'{}' is {}x{} pixels: an image has at least one and at most {} pixels", path.string(), width, height, kMaxPixels)};
+        return Error{
+            fmt::format("'{}' is {}x{} pixels: an image has at least one and at most {} pixels",
+                        path.string(), width, height, kMaxPixels)};
     const uint64_t samples = uint64_t(width) * uint64_t(height) * channelCount;
     if (samples > kMaxPixels * 16 || samples / kMaxCompression > fileBytes)
-        return Error{fmt::format("'{}' promises {}x{} pixels in {} channels, which its {} bytes cannot hold: it is damaged", path.string(), width,
-                                 height, channelCount, fileBytes)};
+        return Error{fmt::format(
+            "'{}' promises {}x{} pixels in {} channels, which its {} bytes cannot hold: it is damaged",
+            path.string(), width, height, channelCount, fileBytes)};
     return {};
 }
 
@@ -161,10 +176,13 @@ Result<ExrFile> decode(const std::filesystem::path& path, std::string_view conte
     for (auto it = header.channels().begin(); it != header.channels().end(); ++it) {
         ++channelCount;
         if (it.channel().xSampling != 1 || it.channel().ySampling != 1)
-            return Error{fmt::format("'{}' stores channel '{}' at a lower resolution: only full-resolution channels are read", path.string(), it.name())};
+            return Error{fmt::format(
+                "'{}' stores channel '{}' at a lower resolution: only full-resolution channels are read",
+                path.string(), it.name())};
     }
     if (channelCount == 0) return Error{fmt::format("'{}' has no channels", path.string())};
-    if (Result<void> size = checkSize(path, header, content.size(), channelCount); !size.ok()) return size.error();
+    if (Result<void> size = checkSize(path, header, content.size(), channelCount); !size.ok())
+        return size.error();
 
     ExrFile result;
     const Imath::Box2i window = header.dataWindow();
@@ -173,28 +191,39 @@ Result<ExrFile> decode(const std::filesystem::path& path, std::string_view conte
     result.layers.reserve(plans.size()); // the frame buffer points into the images
     Imf::FrameBuffer frame;
     for (const Plan& plan : plans) {
-        Image& image = result.layers.emplace_back(ImageLayer{plan.layer, Image(width, height, int(plan.channels.size()))}).image;
+        Image& image = result.layers
+                           .emplace_back(ImageLayer{
+                               plan.layer, Image(width, height, int(plan.channels.size()))})
+                           .image;
         for (size_t c = 0; c < plan.channels.size(); ++c) {
             const size_t pixelBytes = sizeof(float) * plan.channels.size();
-            frame.insert(plan.channels[c], Imf::Slice::Make(Imf::FLOAT, image.pixels.data() + c, window, pixelBytes, pixelBytes * size_t(width)));
+            frame.insert(plan.channels[c],
+                         Imf::Slice::Make(Imf::FLOAT, image.pixels.data() + c, window, pixelBytes,
+                                          pixelBytes * size_t(width)));
         }
     }
     file.setFrameBuffer(frame);
     file.readPixels(window.min.y, window.max.y);
     for (auto it = header.begin(); it != header.end(); ++it)
-        if (const auto* text = dynamic_cast<const Imf::StringAttribute*>(&it.attribute())) result.metadata[it.name()] = text->value();
+        if (const auto* text = dynamic_cast<const Imf::StringAttribute*>(&it.attribute()))
+            result.metadata[it.name()] = text->value();
     return result;
 }
 
 } // namespace
 
-Result<void> writeExr(const std::filesystem::path& path, std::span<const ImageLayer> layers, const ImageMetadata& metadata, ExrDepth depth) {
+Result<void> writeExr(const std::filesystem::path& path, std::span<const ImageLayer> layers,
+                      const ImageMetadata& metadata, ExrDepth depth) {
     CHECK(!layers.empty(), "an EXR has at least one layer");
     const Image& first = layers.front().image;
     for (const ImageLayer& layer : layers) {
-        CHECK(layer.image.width == first.width && layer.image.height == first.height, "all layers have one size: " + layer.name);
-        CHECK(layer.image.channels == 1 || layer.image.channels == 3 || layer.image.channels == 4, "1, 3 or 4 channels: " + layer.name);
-        CHECK(layer.image.pixels.size() == size_t(first.width) * size_t(first.height) * size_t(layer.image.channels), layer.name);
+        CHECK(layer.image.width == first.width && layer.image.height == first.height,
+              "all layers have one size: " + layer.name);
+        CHECK(layer.image.channels == 1 || layer.image.channels == 3 || layer.image.channels == 4,
+              "1, 3 or 4 channels: " + layer.name);
+        CHECK(layer.image.pixels.size() ==
+                  size_t(first.width) * size_t(first.height) * size_t(layer.image.channels),
+              layer.name);
     }
     std::string encoded;
     try {

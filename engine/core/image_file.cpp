@@ -54,7 +54,8 @@ Result<void> writeThrough(const fs::path& path, int flags, std::string_view cont
     if (file.get() < 0) return systemError("cannot write", path, errno);
     if (!writeAll(file.get(), content)) return systemError("cannot write all of", path, errno);
     // Pipes and devices cannot be synchronised (EINVAL); for a file the rename must not overtake its content.
-    if (::fsync(file.get()) != 0 && errno != EINVAL && errno != EROFS) return systemError("cannot write all of", path, errno);
+    if (::fsync(file.get()) != 0 && errno != EINVAL && errno != EROFS)
+        return systemError("cannot write all of", path, errno);
     if (!file.closeNow()) return systemError("cannot write all of", path, errno);
     return {};
 }
@@ -62,27 +63,32 @@ Result<void> writeThrough(const fs::path& path, int flags, std::string_view cont
 /// Unique in the folder: two programs, or two threads of one, may write the same output at once.
 fs::path temporaryNameBeside(const fs::path& target) {
     static std::atomic<unsigned> counter{0};
-    return target.parent_path() /
-           fmt::format(".{}.{}-{}.tmp", target.filename().string(), ::getpid(), counter.fetch_add(1));
+    return target.parent_path() / fmt::format(".{}.{}-{}.tmp", target.filename().string(),
+                                              ::getpid(), counter.fetch_add(1));
 }
 
 } // namespace
 
 Result<void> writeFileAtomically(const fs::path& path, std::string_view content) {
-    if (path.empty() || path.filename().empty()) return Error{fmt::format("cannot write '{}': that is not a file name", path.string())};
+    if (path.empty() || path.filename().empty())
+        return Error{fmt::format("cannot write '{}': that is not a file name", path.string())};
     std::error_code error;
     const fs::file_status status = fs::status(path, error);
     if (fs::is_directory(status)) return systemError("cannot write", path, EISDIR);
-    if (fs::exists(status) && !fs::is_regular_file(status)) return writeThrough(path, 0, content); // /dev/stdout, a pipe
+    if (fs::exists(status) && !fs::is_regular_file(status))
+        return writeThrough(path, 0, content); // /dev/stdout, a pipe
     // Through a symbolic link it is the target that is replaced, as with an ordinary write.
     const fs::path target = fs::exists(status) ? fs::canonical(path, error) : path;
-    if (error && fs::exists(status)) return Error{fmt::format("cannot write '{}': {}", path.string(), error.message())};
+    if (error && fs::exists(status))
+        return Error{fmt::format("cannot write '{}': {}", path.string(), error.message())};
     // The folder decides about a rename; a file that its owner write-protected stays.
-    if (fs::exists(status) && ::access(target.c_str(), W_OK) != 0) return systemError("cannot write", path, errno);
+    if (fs::exists(status) && ::access(target.c_str(), W_OK) != 0)
+        return systemError("cannot write", path, errno);
 
     const fs::path temporary = temporaryNameBeside(target);
     Result<void> written = writeThrough(temporary, O_CREAT | O_EXCL, content);
-    if (written.ok() && ::rename(temporary.c_str(), target.c_str()) != 0) written = systemError("cannot write", path, errno);
+    if (written.ok() && ::rename(temporary.c_str(), target.c_str()) != 0)
+        written = systemError("cannot write", path, errno);
     if (!written.ok()) {
         ::unlink(temporary.c_str());
         std::string message = written.message();
@@ -100,19 +106,23 @@ Result<std::string> readFile(const fs::path& path, size_t maxBytes) {
     if (::fstat(file.get(), &information) != 0) return systemError("cannot read", path, errno);
     if (S_ISDIR(information.st_mode)) return systemError("cannot read", path, EISDIR);
     if (information.st_size > 0 && size_t(information.st_size) > maxBytes)
-        return Error{fmt::format("'{}' has {} bytes: at most {} are read", path.string(), information.st_size, maxBytes)};
+        return Error{fmt::format("'{}' has {} bytes: at most {} are read", path.string(),
+                                 information.st_size, maxBytes)};
 
     std::string content;
     content.reserve(size_t(information.st_size)); // 0 for pipes, which grow the string as they come
     for (;;) {
         const size_t have = content.size();
-        content.resize(have + (size_t(information.st_size) > have ? size_t(information.st_size) - have : size_t(65536)));
+        content.resize(have + (size_t(information.st_size) > have
+                                   ? size_t(information.st_size) - have
+                                   : size_t(65536)));
         const ssize_t got = ::read(file.get(), content.data() + have, content.size() - have);
         if (got < 0 && errno != EINTR) return systemError("cannot read", path, errno);
         content.resize(have + size_t(std::max<ssize_t>(got, 0)));
         if (got == 0) return content;
         if (content.size() > maxBytes)
-            return Error{fmt::format("'{}' has more than {} bytes, which is all that is read", path.string(), maxBytes)};
+            return Error{fmt::format("'{}' has more than {} bytes, which is all that is read",
+                                     path.string(), maxBytes)};
     }
 }
 

@@ -59,10 +59,13 @@ bool parseResolution(std::string_view text, Header& header) {
     const size_t middle = text.find(" +X ");
     if (middle == std::string_view::npos) return false;
     const auto number = [](std::string_view digits, int& out) {
-        const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), out);
-        return error == std::errc() && end != digits.data() && (end == digits.data() + digits.size() || *end == '\r');
+        const auto [end, error] =
+            std::from_chars(digits.data(), digits.data() + digits.size(), out);
+        return error == std::errc() && end != digits.data() &&
+               (end == digits.data() + digits.size() || *end == '\r');
     };
-    return number(text.substr(3, middle - 3), header.height) && number(text.substr(middle + 4), header.width);
+    return number(text.substr(3, middle - 3), header.height) &&
+           number(text.substr(middle + 4), header.width);
 }
 
 /// Empty, or what is wrong with the header.
@@ -75,7 +78,8 @@ std::string readHeader(Cursor& cursor, Header& header) {
         if (!cursor.line(text)) return "its header does not end";
         if (text.empty() || text == "\r") break;
         if (text.starts_with("FORMAT=")) {
-            if (!text.starts_with("FORMAT=32-bit_rle_rgbe")) return fmt::format("its pixels are '{}', not 32-bit_rle_rgbe", text.substr(7));
+            if (!text.starts_with("FORMAT=32-bit_rle_rgbe"))
+                return fmt::format("its pixels are '{}', not 32-bit_rle_rgbe", text.substr(7));
             formatSeen = true;
         } else if (text.starts_with("EXPOSURE=")) {
             float factor = 1;
@@ -85,9 +89,12 @@ std::string readHeader(Cursor& cursor, Header& header) {
         }
     }
     if (!formatSeen) return "its header names no FORMAT";
-    if (!cursor.line(text) || !parseResolution(text, header)) return "its resolution is not of the form '-Y HEIGHT +X WIDTH'";
-    if (header.width < 1 || header.height < 1 || header.width > kMaxSide || header.height > kMaxSide)
-        return fmt::format("it is {}x{} pixels: each side is 1 to {}", header.width, header.height, kMaxSide);
+    if (!cursor.line(text) || !parseResolution(text, header))
+        return "its resolution is not of the form '-Y HEIGHT +X WIDTH'";
+    if (header.width < 1 || header.height < 1 || header.width > kMaxSide ||
+        header.height > kMaxSide)
+        return fmt::format("it is {}x{} pixels: each side is 1 to {}", header.width, header.height,
+                           kMaxSide);
     return {};
 }
 
@@ -145,16 +152,21 @@ Result<Image> readRadiance(const std::filesystem::path& path) {
     Cursor cursor(*content);
     Header header;
     if (const std::string wrong = readHeader(cursor, header); !wrong.empty())
-        return Error{fmt::format("'{}' is not a readable Radiance picture: {}", path.string(), wrong)};
+        return Error{
+            fmt::format("'{}' is not a readable Radiance picture: {}", path.string(), wrong)};
     // A scan line takes at least 4·(2 bytes per 127 pixels): a promise beyond that is not worth its memory.
     if (size_t(header.width) * size_t(header.height) / 128 > cursor.left())
-        return Error{fmt::format("'{}' promises {}x{} pixels, which its {} bytes cannot hold: it is damaged", path.string(), header.width,
-                                 header.height, content->size())};
+        return Error{
+            fmt::format("'{}' promises {}x{} pixels, which its {} bytes cannot hold: it is damaged",
+                        path.string(), header.width, header.height, content->size())};
     Image image(header.width, header.height, 3);
     std::vector<Rgbe> line(size_t(header.width));
     for (int y = 0; y < header.height; ++y) {
-        const bool whole = cursor.startsNewRunLength(header.width) ? readPlanes(cursor, line) : readPixels(cursor, line);
-        if (!whole) return Error{fmt::format("'{}' is damaged or cut off at row {} of {}", path.string(), y, header.height)};
+        const bool whole = cursor.startsNewRunLength(header.width) ? readPlanes(cursor, line)
+                                                                   : readPixels(cursor, line);
+        if (!whole)
+            return Error{fmt::format("'{}' is damaged or cut off at row {} of {}", path.string(), y,
+                                     header.height)};
         toFloat(line, 1.0f / header.exposure, image.at(0, y));
     }
     return image;
@@ -168,10 +180,13 @@ Result<Image> mainLayerAsRgb(const std::filesystem::path& path) {
         if (!layer.name.empty() || (from.channels != 1 && from.channels < 3)) continue;
         Image rgb(from.width, from.height, 3);
         for (size_t i = 0; i < size_t(from.width) * size_t(from.height); ++i)
-            for (size_t c = 0; c < 3; ++c) rgb.pixels[i * 3 + c] = from.pixels[i * size_t(from.channels) + (from.channels == 1 ? 0 : c)];
+            for (size_t c = 0; c < 3; ++c)
+                rgb.pixels[i * 3 + c] =
+                    from.pixels[i * size_t(from.channels) + (from.channels == 1 ? 0 : c)];
         return rgb;
     }
-    return Error{fmt::format("'{}' has no main layer with the channels R, G, B or Y", path.string())};
+    return Error{
+        fmt::format("'{}' has no main layer with the channels R, G, B or Y", path.string())};
 }
 
 /// Light is finite and not negative. A sun that overflowed while the map was made becomes as bright as half floats go.
@@ -182,7 +197,10 @@ void sanitise(Image& image, const std::filesystem::path& path) {
         value = value > 0 ? kLargestHalf : 0.0f;
         ++mended;
     }
-    if (mended) log::warning(fmt::format("'{}': {} values were negative or not finite; they were set to 0 or {}", path.string(), mended, kLargestHalf));
+    if (mended)
+        log::warning(
+            fmt::format("'{}': {} values were negative or not finite; they were set to 0 or {}",
+                        path.string(), mended, kLargestHalf));
 }
 
 } // namespace
@@ -191,7 +209,8 @@ Result<Image> readHdr(const std::filesystem::path& path) {
     std::string extension = path.extension().string();
     for (char& c : extension) c = char(std::tolower(static_cast<unsigned char>(c)));
     if (extension != ".hdr" && extension != ".exr")
-        return Error{fmt::format("'{}' is not an environment image: its name must end in .hdr or .exr", path.string())};
+        return Error{fmt::format(
+            "'{}' is not an environment image: its name must end in .hdr or .exr", path.string())};
     Result<Image> image = extension == ".hdr" ? readRadiance(path) : mainLayerAsRgb(path);
     if (image.ok()) sanitise(*image, path);
     return image;

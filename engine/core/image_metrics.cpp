@@ -42,32 +42,39 @@ ValueCounts countValues(const Image& image) {
 }
 
 Result<ImageMetrics> compareImages(const Image& image, const Image& reference) {
-    if (image.width != reference.width || image.height != reference.height || image.channels != reference.channels)
-        return Error{fmt::format("the images differ in shape: {}x{} with {} channels against {}x{} with {}", image.width, image.height, image.channels,
-                                 reference.width, reference.height, reference.channels)};
-    CHECK(!image.pixels.empty() && image.channels >= 1 && image.channels <= 4, fmt::format("{} channels", image.channels));
+    if (image.width != reference.width || image.height != reference.height ||
+        image.channels != reference.channels)
+        return Error{fmt::format(
+            "the images differ in shape: {}x{} with {} channels against {}x{} with {}", image.width,
+            image.height, image.channels, reference.width, reference.height, reference.channels)};
+    CHECK(!image.pixels.empty() && image.channels >= 1 && image.channels <= 4,
+          fmt::format("{} channels", image.channels));
     ImageMetrics metrics;
     metrics.image = countValues(image);
     metrics.reference = countValues(reference);
     if (metrics.image.nonFinite + metrics.reference.nonFinite > 0) {
-        metrics.rmse = metrics.relmse = metrics.energy = metrics.largestDifference = std::numeric_limits<double>::quiet_NaN();
+        metrics.rmse = metrics.relmse = metrics.energy = metrics.largestDifference =
+            std::numeric_limits<double>::quiet_NaN();
         metrics.energyPerChannel.fill(metrics.energy);
         return metrics;
     }
-    const std::array<double, 4> ofImage = channelMeans(image), ofReference = channelMeans(reference);
+    const std::array<double, 4> ofImage = channelMeans(image),
+                                ofReference = channelMeans(reference);
     const double mean = meanOf(ofReference, reference.channels);
     const double floor = 0.01 * mean * mean;
     double squares = 0, relative = 0;
     for (size_t i = 0; i < image.pixels.size(); ++i) {
         const double r = double(reference.pixels[i]), difference = double(image.pixels[i]) - r;
         squares += difference * difference;
-        if (difference != 0) relative += difference * difference / (r * r + floor); // 0/0 is no error
+        if (difference != 0)
+            relative += difference * difference / (r * r + floor); // 0/0 is no error
         metrics.largestDifference = std::max(metrics.largestDifference, std::abs(difference));
     }
     metrics.rmse = std::sqrt(squares / double(image.pixels.size()));
     metrics.relmse = relative / double(image.pixels.size());
     metrics.energy = ratio(meanOf(ofImage, image.channels), mean);
-    for (size_t c = 0; c < size_t(image.channels); ++c) metrics.energyPerChannel[c] = ratio(ofImage[c], ofReference[c]);
+    for (size_t c = 0; c < size_t(image.channels); ++c)
+        metrics.energyPerChannel[c] = ratio(ofImage[c], ofReference[c]);
     return metrics;
 }
 

@@ -17,9 +17,10 @@ ValueCounts countValues(const Image& image);
 
 struct ImageMetrics {
     ValueCounts image, reference;
-    double rmse = 0;    // sqrt(mean((v-r)²))
-    double relmse = 0;  // mean((v-r)² / (r² + 0.01·m²)), m the mean of r; independent of the scale of both
-    double energy = 0;  // mean(v) / mean(r)
+    double rmse = 0; // sqrt(mean((v-r)²))
+    double relmse =
+        0; // mean((v-r)² / (r² + 0.01·m²)), m the mean of r; independent of the scale of both
+    double energy = 0;                        // mean(v) / mean(r)
     std::array<double, 4> energyPerChannel{}; // as many as there are channels
     double largestDifference = 0;             // max |v-r|
 };

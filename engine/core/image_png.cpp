@@ -16,16 +16,20 @@
 
 namespace tyndall {
 
-Result<void> writePng(const std::filesystem::path& path, int width, int height, int channels, std::span<const uint8_t> bytes) {
+Result<void> writePng(const std::filesystem::path& path, int width, int height, int channels,
+                      std::span<const uint8_t> bytes) {
     CHECK(channels == 3 || channels == 4, "a PNG is RGB or RGBA");
     CHECK(width > 0 && height > 0, fmt::format("size {}x{}", width, height));
-    CHECK(bytes.size() == size_t(width) * size_t(height) * size_t(channels), fmt::format("{} bytes", bytes.size()));
+    CHECK(bytes.size() == size_t(width) * size_t(height) * size_t(channels),
+          fmt::format("{} bytes", bytes.size()));
     std::string encoded;
     const auto append = [](void* context, void* data, int size) {
         static_cast<std::string*>(context)->append(static_cast<const char*>(data), size_t(size));
     };
-    if (!stbi_write_png_to_func(append, &encoded, width, height, channels, bytes.data(), width * channels))
-        return Error{fmt::format("cannot write '{}': no memory to encode {}x{} pixels", path.string(), width, height)};
+    if (!stbi_write_png_to_func(append, &encoded, width, height, channels, bytes.data(),
+                                width * channels))
+        return Error{fmt::format("cannot write '{}': no memory to encode {}x{} pixels",
+                                 path.string(), width, height)};
     return writeFileAtomically(path, encoded);
 }
 

@@ -19,7 +19,8 @@ size_t sequenceLength(std::string_view text) {
     if (lead < 0x80) return 1;
     if (lead >= 0xc2 && lead <= 0xdf) return continues(1) ? 2 : 0;
     if (lead >= 0xe0 && lead <= 0xef) {
-        const bool overlong = lead == 0xe0 && at(1) < 0xa0, surrogate = lead == 0xed && at(1) > 0x9f;
+        const bool overlong = lead == 0xe0 && at(1) < 0xa0,
+                   surrogate = lead == 0xed && at(1) > 0x9f;
         return continues(1) && continues(2) && !overlong && !surrogate ? 3 : 0;
     }
     if (lead >= 0xf0 && lead <= 0xf4) {
@@ -54,8 +55,10 @@ std::string jsonString(std::string_view text) {
     std::string out = "\"";
     while (!text.empty()) {
         const size_t length = sequenceLength(text);
-        if (length == 1) appendEscaped(out, text.front());
-        else out += length == 0 ? kReplacement : text.substr(0, length);
+        if (length == 1)
+            appendEscaped(out, text.front());
+        else
+            out += length == 0 ? kReplacement : text.substr(0, length);
         text.remove_prefix(length == 0 ? 1 : length);
     }
     return out + '"';
@@ -80,12 +83,15 @@ void JsonWriter::separate() {
     }
     Level& level = levels_.back();
     const bool first = level.count++ == 0;
-    if (level.compact) text_ += first ? "" : ", ";
-    else (text_ += first ? "\n" : ",\n").append(2 * levels_.size(), ' ');
+    if (level.compact)
+        text_ += first ? "" : ", ";
+    else
+        (text_ += first ? "\n" : ",\n").append(2 * levels_.size(), ' ');
 }
 
 JsonWriter& JsonWriter::key(std::string_view name) {
-    CHECK(!levels_.empty() && levels_.back().closing == '}' && !afterKey_, "a key belongs into an object: " + std::string(name));
+    CHECK(!levels_.empty() && levels_.back().closing == '}' && !afterKey_,
+          "a key belongs into an object: " + std::string(name));
     separate();
     text_ += jsonString(name) + ": ";
     afterKey_ = true;
@@ -93,7 +99,8 @@ JsonWriter& JsonWriter::key(std::string_view name) {
 }
 
 JsonWriter& JsonWriter::raw(std::string_view text) {
-    CHECK(levels_.empty() || levels_.back().closing == ']' || afterKey_, "a value in an object needs a key: " + std::string(text));
+    CHECK(levels_.empty() || levels_.back().closing == ']' || afterKey_,
+          "a value in an object needs a key: " + std::string(text));
     separate();
     text_ += text;
     return *this;
@@ -113,7 +120,8 @@ JsonWriter& JsonWriter::open(char bracket) {
 }
 
 JsonWriter& JsonWriter::close(char bracket) {
-    CHECK(!levels_.empty() && levels_.back().closing == bracket && !afterKey_, "brackets close in the order in which they opened");
+    CHECK(!levels_.empty() && levels_.back().closing == bracket && !afterKey_,
+          "brackets close in the order in which they opened");
     const Level level = levels_.back();
     levels_.pop_back();
     if (!level.compact && level.count > 0) text_.append("\n").append(2 * levels_.size(), ' ');

@@ -26,11 +26,11 @@ public:
     JsonWriter& value(const char* text) { return raw(jsonString(text)); }
     JsonWriter& value(bool yes) { return raw(yes ? "true" : "false"); }
     JsonWriter& value(double number) { return raw(jsonNumber(number)); }
-    template <std::integral T>
-    JsonWriter& value(T number) { return raw(std::to_string(number)); }
+    template <std::integral T> JsonWriter& value(T number) { return raw(std::to_string(number)); }
     JsonWriter& null() { return raw("null"); }
-    template <typename T>
-    JsonWriter& member(std::string_view name, const T& v) { return key(name).value(v); }
+    template <typename T> JsonWriter& member(std::string_view name, const T& v) {
+        return key(name).value(v);
+    }
     /// The next object or array is written on one line.
     JsonWriter& compact();
 

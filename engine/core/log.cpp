@@ -20,7 +20,9 @@ State& state() {
 }
 
 void writeToStderr(Level level, std::string_view message) {
-    const char* prefix = level == Level::Warning ? "warning: " : level == Level::Error ? "error: " : "";
+    const char* prefix = level == Level::Warning ? "warning: "
+                         : level == Level::Error ? "error: "
+                                                 : "";
     std::fprintf(stderr, "%s%.*s\n", prefix, int(message.size()), message.data());
 }
 
@@ -28,8 +30,10 @@ void emit(Level level, std::string_view message) {
     State& s = state();
     std::lock_guard lock(s.mutex);
     if (level < s.level) return;
-    if (s.sink) s.sink(level, message);
-    else writeToStderr(level, message);
+    if (s.sink)
+        s.sink(level, message);
+    else
+        writeToStderr(level, message);
 }
 
 } // namespace

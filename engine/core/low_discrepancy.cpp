@@ -22,7 +22,9 @@ uint32_t permuteUpwards(uint32_t x, uint32_t seed) {
     return x;
 }
 
-uint32_t scramble(uint32_t x, uint32_t seed) { return reverseBits(permuteUpwards(reverseBits(x), seed)); }
+uint32_t scramble(uint32_t x, uint32_t seed) {
+    return reverseBits(permuteUpwards(reverseBits(x), seed));
+}
 
 /// The second dimension of Sobol's sequence; the first is the radical inverse.
 uint32_t sobol1(uint32_t index) {
@@ -45,7 +47,8 @@ uint64_t mix(uint64_t x) {
 dvec2 lowDiscrepancyPoint(uint32_t index, uint64_t key) {
     const uint64_t a = mix(key), b = mix(a);
     const uint32_t shuffled = scramble(index, uint32_t(a));
-    const uint32_t x = scramble(reverseBits(shuffled), uint32_t(a >> 32)), y = scramble(sobol1(shuffled), uint32_t(b));
+    const uint32_t x = scramble(reverseBits(shuffled), uint32_t(a >> 32)),
+                   y = scramble(sobol1(shuffled), uint32_t(b));
     return {x * 0x1p-32, y * 0x1p-32};
 }
 

@@ -41,8 +41,14 @@ struct Bounds {
     [[nodiscard]] bool empty() const {
         return !(minimum.x <= maximum.x && minimum.y <= maximum.y && minimum.z <= maximum.z);
     }
-    void include(const dvec3& p) { minimum = glm::min(minimum, p); maximum = glm::max(maximum, p); }
-    void include(const Bounds& b) { minimum = glm::min(minimum, b.minimum); maximum = glm::max(maximum, b.maximum); }
+    void include(const dvec3& p) {
+        minimum = glm::min(minimum, p);
+        maximum = glm::max(maximum, p);
+    }
+    void include(const Bounds& b) {
+        minimum = glm::min(minimum, b.minimum);
+        maximum = glm::max(maximum, b.maximum);
+    }
     [[nodiscard]] dvec3 centre() const { return 0.5 * (minimum + maximum); }
     [[nodiscard]] dvec3 extent() const { return maximum - minimum; }
     /// The box around this box's eight corners after `transform`.
@@ -50,7 +56,8 @@ struct Bounds {
         Bounds result;
         if (empty()) return result;
         for (int i = 0; i < 8; ++i)
-            result.include(dvec3(transform * dvec4((i & 1) ? maximum.x : minimum.x, (i & 2) ? maximum.y : minimum.y,
+            result.include(dvec3(transform * dvec4((i & 1) ? maximum.x : minimum.x,
+                                                   (i & 2) ? maximum.y : minimum.y,
                                                    (i & 4) ? maximum.z : minimum.z, 1.0)));
         return result;
     }

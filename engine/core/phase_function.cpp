@@ -11,23 +11,27 @@ namespace tyndall {
 
 namespace {
 
-void checkAnisotropy(double g) { CHECK(g > -1 && g < 1, "the anisotropy g must lie between -1 and 1"); }
+void checkAnisotropy(double g) {
+    CHECK(g > -1 && g < 1, "the anisotropy g must lie between -1 and 1");
+}
 
-template <typename Real>
-Real sampleHenyeyGreensteinImpl(Real u, Real g) {
+template <typename Real> Real sampleHenyeyGreensteinImpl(Real u, Real g) {
     const Real a = std::abs(g);
     const Real v = g < 0 ? 1 - u : u; // p(cos; -g) = p(-cos; g)
     const Real denominator = 1 - a + 2 * a * v;
-    const Real cosine = 1 - 2 * (1 - a) * (1 - a) * (1 - v) * (1 + a * v) / (denominator * denominator);
+    const Real cosine =
+        1 - 2 * (1 - a) * (1 - a) * (1 - v) * (1 + a * v) / (denominator * denominator);
     return std::clamp(g < 0 ? -cosine : cosine, Real(-1), Real(1));
 }
 
 /// ∫₀^v of the ratio Cornette–Shanks / Henyey–Greenstein over the latter's own primary variable, |g| small: smooth, so
 /// that ten Gauss–Legendre points are exact to rounding.
 double ratioIntegral(double v, double g) {
-    constexpr std::array<double, 5> kNode = {0.1488743389816312, 0.4333953941292472, 0.6794095682990244, 0.8650633666889845,
+    constexpr std::array<double, 5> kNode = {0.1488743389816312, 0.4333953941292472,
+                                             0.6794095682990244, 0.8650633666889845,
                                              0.9739065285171717};
-    constexpr std::array<double, 5> kWeight = {0.2955242247147529, 0.2692667193099963, 0.2190863625159820, 0.1494513491505806,
+    constexpr std::array<double, 5> kWeight = {0.2955242247147529, 0.2692667193099963,
+                                               0.2190863625159820, 0.1494513491505806,
                                                0.0666713443086881};
     const auto ratio = [&](double x) {
         const double cosine = sampleHenyeyGreensteinImpl(x, g);
@@ -42,7 +46,9 @@ double ratioIntegral(double v, double g) {
 /// The share of Cornette–Shanks below `cosine`, 0 < g < 1: elementary in k = (1+g²-2g·cosθ)^½.
 double cumulativeCornetteShanks(double cosine, double g) {
     const double c = 1 + g * g, q = 1 / (4 * g * g);
-    const auto antiderivative = [&](double k) { return -(1 + c * c * q) / k - 2 * c * q * k + q * k * k * k / 3; };
+    const auto antiderivative = [&](double k) {
+        return -(1 + c * c * q) / k - 2 * c * q * k + q * k * k * k / 3;
+    };
     const double k = std::sqrt((1 - g) * (1 - g) + 2 * g * (1 - cosine));
     return 0.75 * (1 - g * g) / ((2 + g * g) * g) * (antiderivative(1 + g) - antiderivative(k));
 }
@@ -109,12 +115,16 @@ double sampleCornetteShanks(double u, double g) {
     checkAnisotropy(g);
     if (g < 0) return -sampleCornetteShanks(1 - u, -g);
     if (g < 0.1) { // the closed form cancels like 1/g³
-        const auto ratio = [&](double v) { return (1 + std::pow(sampleHenyeyGreensteinImpl(v, g), 2)) * 1.5 / (2 + g * g); };
-        const double v = invert(u, 0, 1, [&](double x) { return ratioIntegral(x, g); }, ratio);
+        const auto ratio = [&](double v) {
+            return (1 + std::pow(sampleHenyeyGreensteinImpl(v, g), 2)) * 1.5 / (2 + g * g);
+        };
+        const double v = invert(
+            u, 0, 1, [&](double x) { return ratioIntegral(x, g); }, ratio);
         return sampleHenyeyGreensteinImpl(v, g);
     }
-    return invert(u, -1, 1, [&](double x) { return cumulativeCornetteShanks(x, g); },
-                  [&](double x) { return 2 * kPi * cornetteShanks(x, g); });
+    return invert(
+        u, -1, 1, [&](double x) { return cumulativeCornetteShanks(x, g); },
+        [&](double x) { return 2 * kPi * cornetteShanks(x, g); });
 }
 
 double cornetteShanksMeanCosine(double g) { return 3 * g * (4 + g * g) / (5 * (2 + g * g)); }

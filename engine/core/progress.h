@@ -19,7 +19,7 @@ ProgressStyle detectProgressStyle();
 /// One piece of work. The terminal's line is cleared at the end.
 class Progress {
 public:
-    using Clock = std::function<double()>;             // seconds
+    using Clock = std::function<double()>; // seconds
     using Write = std::function<void(std::string_view)>;
     Progress(std::string label, ProgressStyle style);
     /// With a clock and an output of one's own.

@@ -17,8 +17,7 @@ struct Error {
 };
 
 /// A value, or the sentence that says why there is none. Reading the wrong side is a CHECK failure.
-template <typename T>
-class [[nodiscard]] Result {
+template <typename T> class [[nodiscard]] Result {
 public:
     Result(T value) : state_(std::move(value)) {}
     Result(Error error) : state_(std::move(error)) {}
@@ -49,8 +48,7 @@ private:
 };
 
 /// Success, or the sentence that says why not.
-template <>
-class [[nodiscard]] Result<void> {
+template <> class [[nodiscard]] Result<void> {
 public:
     Result() = default;
     Result(Error error) : error_(std::move(error)) {}

@@ -7,15 +7,13 @@
 
 namespace tyndall {
 
-template <typename Real>
-Real oneMinusExpOverX(Real x) {
+template <typename Real> Real oneMinusExpOverX(Real x) {
     // Below this, 1 - x/2 is exact to the last digit; it also covers 0, where the quotient is 0/0.
     if (x < Real(1e-8)) return Real(1) - x / 2;
     return -std::expm1(-x) / x;
 }
 
-template <typename Real>
-DistanceSample<Real> sampleExponential(Real u, Real sigma) {
+template <typename Real> DistanceSample<Real> sampleExponential(Real u, Real sigma) {
     const Real depth = -std::log1p(-u); // finite for every u < 1
     return {depth / sigma, sigma * std::exp(-depth)};
 }
@@ -32,8 +30,7 @@ DistanceSample<Real> sampleTruncatedExponential(Real u, Real sigma, Real length)
     return {distance, truncatedExponentialDensity(distance, sigma, length)};
 }
 
-template <typename Real>
-Real truncatedExponentialDensity(Real distance, Real sigma, Real length) {
+template <typename Real> Real truncatedExponentialDensity(Real distance, Real sigma, Real length) {
     if (!(length > 0)) return 0;
     return std::exp(-sigma * distance) / (length * oneMinusExpOverX(sigma * length));
 }
@@ -41,14 +38,12 @@ Real truncatedExponentialDensity(Real distance, Real sigma, Real length) {
 namespace {
 
 /// The interval as angles about the light: begin plus [0,span].
-template <typename Real>
-struct Angles {
+template <typename Real> struct Angles {
     Real height, begin, span;
     bool uniform;
 };
 
-template <typename Real>
-Angles<Real> anglesOf(Real nearest, Real height, Real length) {
+template <typename Real> Angles<Real> anglesOf(Real nearest, Real height, Real length) {
     const Real h = std::max(height, Real(1e-4) * length);
     if (!(h > 0)) return {h, 0, 0, true};
     const Real a = -nearest, b = length - nearest;
@@ -63,7 +58,8 @@ template <typename Real>
 DistanceSample<Real> sampleEquiangular(Real u, Real nearest, Real height, Real length) {
     const Angles<Real> angles = anglesOf(nearest, height, length);
     Real distance = u * length;
-    if (!angles.uniform) distance = nearest + angles.height * std::tan(angles.begin + u * angles.span);
+    if (!angles.uniform)
+        distance = nearest + angles.height * std::tan(angles.begin + u * angles.span);
     distance = std::clamp(distance, Real(0), length);
     return {distance, equiangularDensity(distance, nearest, height, length)};
 }
@@ -77,12 +73,12 @@ Real equiangularDensity(Real distance, Real nearest, Real height, Real length) {
     return angles.height / (angles.span * (angles.height * angles.height + along * along));
 }
 
-#define TYNDALL_INSTANTIATE(REAL)                                                                                     \
-    template REAL oneMinusExpOverX(REAL);                                                                             \
-    template DistanceSample<REAL> sampleExponential(REAL, REAL);                                                      \
-    template DistanceSample<REAL> sampleTruncatedExponential(REAL, REAL, REAL);                                       \
-    template REAL truncatedExponentialDensity(REAL, REAL, REAL);                                                      \
-    template DistanceSample<REAL> sampleEquiangular(REAL, REAL, REAL, REAL);                                          \
+#define TYNDALL_INSTANTIATE(REAL)                                                                  \
+    template REAL oneMinusExpOverX(REAL);                                                          \
+    template DistanceSample<REAL> sampleExponential(REAL, REAL);                                   \
+    template DistanceSample<REAL> sampleTruncatedExponential(REAL, REAL, REAL);                    \
+    template REAL truncatedExponentialDensity(REAL, REAL, REAL);                                   \
+    template DistanceSample<REAL> sampleEquiangular(REAL, REAL, REAL, REAL);                       \
     template REAL equiangularDensity(REAL, REAL, REAL, REAL);
 TYNDALL_INSTANTIATE(float)
 TYNDALL_INSTANTIATE(double)

@@ -5,18 +5,15 @@
 namespace tyndall {
 
 /// (1-e^-x)/x for x ≥ 0: 1 at 0, 1/x for large x.
-template <typename Real>
-[[nodiscard]] Real oneMinusExpOverX(Real x);
+template <typename Real> [[nodiscard]] Real oneMinusExpOverX(Real x);
 
-template <typename Real>
-struct DistanceSample {
+template <typename Real> struct DistanceSample {
     Real distance; // along the ray
     Real density;  // probability per unit of distance
 };
 
 /// Free flight: density σ·e^(-σt) over [0,∞). σ > 0. Infinite only for σ = 0.
-template <typename Real>
-[[nodiscard]] DistanceSample<Real> sampleExponential(Real u, Real sigma);
+template <typename Real> [[nodiscard]] DistanceSample<Real> sampleExponential(Real u, Real sigma);
 
 /// The same, conditional on [0,length]; tends to the uniform distribution for σ·length → 0. σ ≥ 0, length ≥ 0.
 template <typename Real>
@@ -29,7 +26,8 @@ template <typename Real>
 /// nearest point on the ray's line lies at t₀ = `nearest` (any sign), `height` = h ≥ 0 away from it. Where the interval
 /// subtends nearly no angle, or none is left to tell points apart, it is uniform. h is raised to 10⁻⁴ of the length.
 template <typename Real>
-[[nodiscard]] DistanceSample<Real> sampleEquiangular(Real u, Real nearest, Real height, Real length);
+[[nodiscard]] DistanceSample<Real> sampleEquiangular(Real u, Real nearest, Real height,
+                                                     Real length);
 /// Its density at `distance` in [0,length].
 template <typename Real>
 [[nodiscard]] Real equiangularDensity(Real distance, Real nearest, Real height, Real length);

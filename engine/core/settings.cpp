@@ -11,15 +11,13 @@ namespace {
 
 constexpr std::string_view kQualityNames[] = {"low", "medium", "high", "ultra"};
 
-template <typename T>
-T load(const SettingDesc& field, const void* values) {
+template <typename T> T load(const SettingDesc& field, const void* values) {
     T value;
     std::memcpy(&value, static_cast<const char*>(values) + field.offset, sizeof(T));
     return value;
 }
 
-template <typename T>
-void store(const SettingDesc& field, void* values, T value) {
+template <typename T> void store(const SettingDesc& field, void* values, T value) {
     std::memcpy(static_cast<char*>(values) + field.offset, &value, sizeof(T));
 }
 
@@ -81,7 +79,8 @@ std::string_view qualityName(Quality quality) { return kQualityNames[size_t(qual
 Result<Quality> parseQuality(std::string_view name) {
     for (size_t i = 0; i < std::size(kQualityNames); ++i)
         if (kQualityNames[i] == name) return Quality(i);
-    return Error{"quality '" + std::string(name) + "' is unknown: it takes low, medium, high or ultra"};
+    return Error{"quality '" + std::string(name) +
+                 "' is unknown: it takes low, medium, high or ultra"};
 }
 
 std::string nearestName(std::string_view word, std::span<const std::string_view> candidates) {
@@ -132,7 +131,8 @@ Result<void> settingFromText(const SettingDesc& field, void* values, std::string
     double number = 0;
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
     const bool whole = field.type != SettingType::Int || number == std::floor(number);
-    if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(number) || !whole)
+    if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(number) ||
+        !whole)
         return Error{"setting '" + std::string(field.key) + "' = '" + std::string(text) +
                      "' is not a " + (field.type == SettingType::Int ? "whole number" : "number")};
     if (!(number >= field.minimum && number <= field.maximum)) return outOfRange(field, text);
@@ -143,8 +143,10 @@ Result<void> settingFromText(const SettingDesc& field, void* values, std::string
 void SettingsRegistry::add(SettingsGroup group) {
     CHECK(group.values != nullptr);
     for (const SettingDesc& field : group.fields) {
-        CHECK(find(field.key).field == nullptr, "setting registered twice: " + std::string(field.key));
-        CHECK(field.defaultValue >= field.minimum && field.defaultValue <= field.maximum, field.key);
+        CHECK(find(field.key).field == nullptr,
+              "setting registered twice: " + std::string(field.key));
+        CHECK(field.defaultValue >= field.minimum && field.defaultValue <= field.maximum,
+              field.key);
         reset(field, group.values);
     }
     groups_.push_back(group);
@@ -221,7 +223,8 @@ std::vector<std::string> SettingsRegistry::differences() const {
             alone.offset = 0;
             storeNumber(alone, scratch, field.defaultValue);
             const std::string now = settingToText(field, group.values);
-            if (now != settingToText(alone, scratch)) result.push_back(std::string(field.key) + "=" + now);
+            if (now != settingToText(alone, scratch))
+                result.push_back(std::string(field.key) + "=" + now);
         }
     return result;
 }

@@ -23,13 +23,13 @@ enum class SettingType : uint32_t {
 
 /// One field of a settings struct. All pointers are to static storage.
 struct SettingDesc {
-    const char* key;              // dotted, as in `--set media.march.steps=64`
-    const char* name;             // for a person: "March steps"
-    const char* unit;             // "m", "px", "ms", "" where there is none
-    const char* help;             // one sentence
+    const char* key;  // dotted, as in `--set media.march.steps=64`
+    const char* name; // for a person: "March steps"
+    const char* unit; // "m", "px", "ms", "" where there is none
+    const char* help; // one sentence
     SettingType type;
-    uint32_t offset;              // of the field in its struct, bytes
-    double minimum, maximum;      // inclusive; for Bool and Enum 0 and the largest value
+    uint32_t offset;         // of the field in its struct, bytes
+    double minimum, maximum; // inclusive; for Bool and Enum 0 and the largest value
     double defaultValue;
     const char* const* enumNames; // enumCount names, or null
     uint32_t enumCount;

@@ -15,7 +15,8 @@ public:
     /// Tracks appear in the order in which they are added.
     uint32_t addTrack(std::string_view name);
     /// One span; `detail` is shown when it is selected ("skipped: no medium in the scene").
-    void addSpan(uint32_t track, std::string_view name, double startMicroseconds, double durationMicroseconds, std::string_view detail = {});
+    void addSpan(uint32_t track, std::string_view name, double startMicroseconds,
+                 double durationMicroseconds, std::string_view detail = {});
     /// All spans of a profiler, one track a thread: "CPU", "CPU 2" …
     void addProfile(const CpuProfiler& profiler);
     [[nodiscard]] std::string toJson() const;

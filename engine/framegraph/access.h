@@ -8,15 +8,15 @@ namespace tyndall::fg {
 
 enum class Access : uint32_t {
     // reads
-    Sampled = 0,       // texture unit, any stage
-    StorageRead = 1,   // image or shader storage, read only
-    Uniform = 2,       // uniform buffer
-    Indirect = 3,      // draw or dispatch arguments
-    Vertex = 4,        // vertex attributes or indices
-    TransferRead = 5,  // copy source, read-back
-    DepthRead = 6,     // depth test without writes; may be Sampled in the same pass
+    Sampled = 0,      // texture unit, any stage
+    StorageRead = 1,  // image or shader storage, read only
+    Uniform = 2,      // uniform buffer
+    Indirect = 3,     // draw or dispatch arguments
+    Vertex = 4,       // vertex attributes or indices
+    TransferRead = 5, // copy source, read-back
+    DepthRead = 6,    // depth test without writes; may be Sampled in the same pass
     // writes
-    StorageWrite = 7,  // image or shader storage; old content is kept where it is not written
+    StorageWrite = 7, // image or shader storage; old content is kept where it is not written
     ColorTarget = 8,
     DepthTarget = 9,
     TransferWrite = 10, // copy destination, clear

@@ -19,7 +19,8 @@ public:
             ++chunk_;
             used_ = 0;
         }
-        while (chunk_ < chunks_.size()) { // a chunk of an earlier frame may be too small for this request
+        while (chunk_ <
+               chunks_.size()) { // a chunk of an earlier frame may be too small for this request
             if (void* place = fit(chunks_[chunk_], bytes, alignment)) return place;
             ++chunk_;
         }

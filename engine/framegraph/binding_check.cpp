@@ -10,7 +10,8 @@ namespace {
 bool allows(Access declared, Touch touch) {
     switch (touch) {
     case Touch::Sample: return declared == Access::Sampled;
-    case Touch::ReadStorage: return declared == Access::StorageRead || declared == Access::StorageWrite;
+    case Touch::ReadStorage:
+        return declared == Access::StorageRead || declared == Access::StorageWrite;
     case Touch::WriteStorage: return declared == Access::StorageWrite;
     case Touch::UniformBlock: return declared == Access::Uniform;
     case Touch::Indirect: return declared == Access::Indirect;
@@ -41,14 +42,17 @@ const char* wanted(Touch touch) {
 
 } // namespace
 
-std::string checkTouch(const FrameGraphImpl& graph, uint32_t passIndex, uint32_t resource, uint32_t version, Touch touch,
-                       std::string_view place) {
+std::string checkTouch(const FrameGraphImpl& graph, uint32_t passIndex, uint32_t resource,
+                       uint32_t version, Touch touch, std::string_view place) {
     const PassRecord& pass = graph.passes()[passIndex];
-    if (resource == 0) return fmt::format("pass '{}' binds a null handle to '{}': nothing has produced it", pass.name, place);
+    if (resource == 0)
+        return fmt::format("pass '{}' binds a null handle to '{}': nothing has produced it",
+                           pass.name, place);
     const uint32_t bound = graph.versionOf(resource, version);
     if (bound == kNoIndex)
-        return fmt::format("pass '{}' binds a handle to '{}' that this frame does not have: handles end with their frame", pass.name,
-                           place);
+        return fmt::format(
+            "pass '{}' binds a handle to '{}' that this frame does not have: handles end with their frame",
+            pass.name, place);
     const std::string_view name = graph.resources()[resource].name;
     bool declared = false, declaredVersion = false;
     for (uint32_t i = pass.uses.first; i < pass.uses.first + pass.uses.count; ++i) {
@@ -57,19 +61,22 @@ std::string checkTouch(const FrameGraphImpl& graph, uint32_t passIndex, uint32_t
         if (used.resource != resource) continue;
         declared = true;
         // A write may be bound by the handle that went into it or by the one that came out: it is the same storage.
-        const bool sameVersion = use.version == bound || (isWrite(use.access) && used.previous == bound);
+        const bool sameVersion =
+            use.version == bound || (isWrite(use.access) && used.previous == bound);
         declaredVersion |= sameVersion;
         if (sameVersion && allows(use.access, touch)) return {};
     }
     if (!declared)
-        return fmt::format("pass '{}' binds '{}' to '{}' without having declared it: its setup needs {}", pass.name, name, place,
-                           wanted(touch));
+        return fmt::format(
+            "pass '{}' binds '{}' to '{}' without having declared it: its setup needs {}",
+            pass.name, name, place, wanted(touch));
     if (!declaredVersion)
-        return fmt::format("pass '{}' binds version {} of '{}' to '{}' but declared another version: keep the handle that the setup "
-                           "returned",
-                           pass.name, version, name, place);
-    return fmt::format("pass '{}' binds '{}' to '{}', which needs {}, but declared it otherwise", pass.name, name, place,
-                       wanted(touch));
+        return fmt::format(
+            "pass '{}' binds version {} of '{}' to '{}' but declared another version: keep the handle that the setup "
+            "returned",
+            pass.name, version, name, place);
+    return fmt::format("pass '{}' binds '{}' to '{}', which needs {}, but declared it otherwise",
+                       pass.name, name, place, wanted(touch));
 }
 
 } // namespace tyndall::fg

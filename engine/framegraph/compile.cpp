@@ -56,17 +56,20 @@ void Compiler::findFeedback(uint32_t passIndex) {
     const PassRecord& pass = graph_->passes()[passIndex];
     const auto& uses = graph_->uses();
     for (uint32_t i = pass.uses.first; i < pass.uses.first + pass.uses.count; ++i) {
-        if (uses[i].access != Access::ColorTarget && uses[i].access != Access::DepthTarget) continue;
+        if (uses[i].access != Access::ColorTarget && uses[i].access != Access::DepthTarget)
+            continue;
         const uint32_t resource = graph_->versions()[uses[i].version].resource;
         const ResourceRecord& record = graph_->resources()[resource];
         if (record.texture.mips > 1 || record.texture.depth > 1) continue;
         for (uint32_t k = pass.uses.first; k < pass.uses.first + pass.uses.count; ++k) {
             if (graph_->versions()[uses[k].version].resource != resource) continue;
-            if (uses[k].access != Access::Sampled && uses[k].access != Access::StorageRead) continue;
-            result_->errors.push_back(fmt::format("pass '{}' reads '{}' as {} ({}) while it renders to it ({}): write to a new "
-                                                  "texture instead",
-                                                  pass.name, record.name, accessName(uses[k].access), placeText(uses[k].where),
-                                                  placeText(uses[i].where)));
+            if (uses[k].access != Access::Sampled && uses[k].access != Access::StorageRead)
+                continue;
+            result_->errors.push_back(fmt::format(
+                "pass '{}' reads '{}' as {} ({}) while it renders to it ({}): write to a new "
+                "texture instead",
+                pass.name, record.name, accessName(uses[k].access), placeText(uses[k].where),
+                placeText(uses[i].where)));
         }
     }
 }
@@ -77,7 +80,8 @@ void Compiler::verifyOrder() {
         const Range range = graph_->passes()[pass].uses;
         for (uint32_t i = range.first; i < range.first + range.count; ++i) {
             const VersionRecord& version = graph_->versions()[graph_->uses()[i].version];
-            CHECK(version.writer == kNoIndex || version.writer <= pass, "a pass reads what a later pass writes");
+            CHECK(version.writer == kNoIndex || version.writer <= pass,
+                  "a pass reads what a later pass writes");
         }
     }
 }
@@ -89,7 +93,8 @@ void Compiler::markDemanded() {
     const size_t resourceCount = graph_->resources().size();
     currentOf_.assign(resourceCount, kNoIndex);
     for (uint32_t i = 0; i < resourceCount; ++i)
-        if (const uint32_t previous = graph_->resources()[i].previousHalf; previous != kNoIndex) currentOf_[previous] = i;
+        if (const uint32_t previous = graph_->resources()[i].previousHalf; previous != kNoIndex)
+            currentOf_[previous] = i;
     isRead_.assign(graph_->versions().size(), 0);
     for (const UseRecord& use : graph_->uses())
         if (!isWrite(use.access) && !use.ownVersion) isRead_[use.version] = 1;

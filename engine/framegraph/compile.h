@@ -11,14 +11,16 @@
 namespace tyndall::fg {
 
 struct CompileOptions {
-    bool keepAll = false; // no sharing of storage, and nothing is released before the end of the frame
+    bool keepAll =
+        false; // no sharing of storage, and nothing is released before the end of the frame
 };
 
 /// Keeps its scratch memory, so that compiling a graph that does not grow allocates nothing.
 class Compiler {
 public:
     /// Rewrites `result`. Where result.errors is not empty the graph must not run; the rest of `result` is then unspecified.
-    void compile(FrameGraphImpl& graph, PersistentTable& persistent, CompiledGraph& result, const CompileOptions& options = {});
+    void compile(FrameGraphImpl& graph, PersistentTable& persistent, CompiledGraph& result,
+                 const CompileOptions& options = {});
 
 private:
     // compile.cpp
@@ -61,15 +63,16 @@ private:
     CompiledGraph* result_ = nullptr;
     CompileOptions options_;
 
-    std::vector<uint8_t> demanded_;  // per pass: would run if nothing were cached
-    std::vector<uint8_t> live_;      // per pass: an output needs it in this frame
-    std::vector<uint8_t> cached_;    // per pass: its results still hold
-    std::vector<uint8_t> isRead_;    // per version
+    std::vector<uint8_t> demanded_; // per pass: would run if nothing were cached
+    std::vector<uint8_t> live_;     // per pass: an output needs it in this frame
+    std::vector<uint8_t> cached_;   // per pass: its results still hold
+    std::vector<uint8_t> isRead_;   // per version
     std::vector<uint32_t> stack_;
-    std::vector<uint32_t> currentOf_; // per resource: HistoryCurrent that belongs to a HistoryPrevious
-    std::vector<uint64_t> content_;  // per version: number of its content
-    std::vector<uint32_t> kept_;     // per resource: storage index in the persistent table
-    std::vector<uint32_t> final_;    // per resource: the last version that a demanded pass makes
+    std::vector<uint32_t>
+        currentOf_; // per resource: HistoryCurrent that belongs to a HistoryPrevious
+    std::vector<uint64_t> content_; // per version: number of its content
+    std::vector<uint32_t> kept_;    // per resource: storage index in the persistent table
+    std::vector<uint32_t> final_;   // per resource: the last version that a demanded pass makes
 
     std::vector<uint8_t> slotTaken_; // per slot
     struct StorageState {

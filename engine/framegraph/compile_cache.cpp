@@ -39,12 +39,14 @@ void Compiler::findKeptEntries() {
         uint64_t twins = 0;
         for (uint32_t k = 1; k < i; ++k)
             twins += kept_[k] != kNoIndex && resources[k].origin == ResourceOrigin::Transient &&
-                     resources[k].isBuffer == resource.isBuffer && resources[k].name == resource.name &&
+                     resources[k].isBuffer == resource.isBuffer &&
+                     resources[k].name == resource.name &&
                      graph_->passes()[resources[k].creator].name == creator.name;
         const uint32_t entry =
-            resource.isBuffer
-                ? persistent_->findBuffer(PersistentKind::Kept, resource.name, mixHash(salt, twins), resource.buffer)
-                : persistent_->findTexture(PersistentKind::Kept, resource.name, mixHash(salt, twins), resource.texture);
+            resource.isBuffer ? persistent_->findBuffer(PersistentKind::Kept, resource.name,
+                                                        mixHash(salt, twins), resource.buffer)
+                              : persistent_->findTexture(PersistentKind::Kept, resource.name,
+                                                         mixHash(salt, twins), resource.texture);
         kept_[i] = entry * 2;
     }
 }
@@ -57,23 +59,29 @@ void Compiler::numberContents() {
         const ResourceRecord& resource = graph_->resources()[versions[v].resource];
         // Small numbers name both imports and entries: the kind keeps them apart.
         if (resource.origin == ResourceOrigin::Imported)
-            content_[v] = mixHash(mixHash(resource.isBuffer ? 2 : 1, resource.staticId), resource.importedContent);
+            content_[v] = mixHash(mixHash(resource.isBuffer ? 2 : 1, resource.staticId),
+                                  resource.importedContent);
         else
-            content_[v] = mixHash(mixHash(3, resource.persistent / 2), persistent_->entry(resource.persistent / 2).content);
+            content_[v] = mixHash(mixHash(3, resource.persistent / 2),
+                                  persistent_->entry(resource.persistent / 2).content);
     }
     for (uint32_t passIndex = 0; passIndex < graph_->passes().size(); ++passIndex) {
         const PassRecord& pass = graph_->passes()[passIndex];
-        const uint64_t signature = pass.skipped     ? 0
-                                   : pass.cacheable ? signatureOf(passIndex)
-                                                    : mixHash(mixHash(kHashStart, persistent_->frame()), passIndex);
-        for (uint32_t i = pass.uses.first, written = 0; i < pass.uses.first + pass.uses.count; ++i) {
+        const uint64_t signature =
+            pass.skipped     ? 0
+            : pass.cacheable ? signatureOf(passIndex)
+                             : mixHash(mixHash(kHashStart, persistent_->frame()), passIndex);
+        for (uint32_t i = pass.uses.first, written = 0; i < pass.uses.first + pass.uses.count;
+             ++i) {
             const UseRecord& use = graph_->uses()[i];
             if (!isWrite(use.access)) continue;
             const VersionRecord& version = versions[use.version];
             if (!version.skipped)
-                content_[use.version] = mixHash(signature, written++) | 1; // never 0, which means "nothing written"
+                content_[use.version] =
+                    mixHash(signature, written++) | 1; // never 0, which means "nothing written"
             else
-                content_[use.version] = version.previous == kNoIndex ? kAbsentContent : content_[version.previous];
+                content_[use.version] =
+                    version.previous == kNoIndex ? kAbsentContent : content_[version.previous];
         }
     }
 }
@@ -130,8 +138,10 @@ bool Compiler::resultsHeld(uint32_t passIndex) const {
         const UseRecord& use = graph_->uses()[i];
         if (!isWrite(use.access)) continue;
         const uint32_t resource = graph_->versions()[use.version].resource;
-        if (kept_[resource] == kNoIndex) return false; // imported, or made by a pass that is not cached
-        if (persistent_->entry(kept_[resource] / 2).content != content_[final_[resource]]) return false;
+        if (kept_[resource] == kNoIndex)
+            return false; // imported, or made by a pass that is not cached
+        if (persistent_->entry(kept_[resource] / 2).content != content_[final_[resource]])
+            return false;
         writes = true;
     }
     return writes;
@@ -151,10 +161,14 @@ bool Compiler::dropBrokenChains() {
         for (uint32_t i = pass.uses.first; i < pass.uses.first + pass.uses.count; ++i) {
             const UseRecord& use = graph_->uses()[i];
             const VersionRecord& used = graph_->versions()[use.version];
-            const bool wantsFinal = !isWrite(use.access) && graph_->contentVersion(use.version) == final_[used.resource];
+            const bool wantsFinal = !isWrite(use.access) &&
+                                    graph_->contentVersion(use.version) == final_[used.resource];
             if (wantsFinal) continue;
-            for (uint32_t v = graph_->resources()[used.resource].latest; v != kNoIndex; v = graph_->versions()[v].previous)
-                if (const uint32_t writer = graph_->versions()[v].writer; writer != kNoIndex && writer != passIndex) drop(writer);
+            for (uint32_t v = graph_->resources()[used.resource].latest; v != kNoIndex;
+                 v = graph_->versions()[v].previous)
+                if (const uint32_t writer = graph_->versions()[v].writer;
+                    writer != kNoIndex && writer != passIndex)
+                    drop(writer);
         }
     }
     return dropped;

@@ -42,7 +42,9 @@ void Compiler::fillResources() {
         resource.isBuffer = record.isBuffer;
         resource.texture = record.texture;
         resource.buffer = record.buffer;
-        resource.bytes = index == 0 ? 0 : record.isBuffer ? record.buffer.bytes : byteSize(record.texture);
+        resource.bytes = index == 0        ? 0
+                         : record.isBuffer ? record.buffer.bytes
+                                           : byteSize(record.texture);
         resource.origin = record.origin;
         resource.isOutput = record.isOutput;
         resource.staticId = record.staticId;
@@ -83,7 +85,8 @@ void Compiler::findLifetimes() {
                 continue;
             }
             // Something was skipped here before: what this pass does not write must read as nothing.
-            if (version.previous != kNoIndex && graph_->versions()[version.previous].absent) resource.clearFirst = true;
+            if (version.previous != kNoIndex && graph_->versions()[version.previous].absent)
+                resource.clearFirst = true;
             useResource(version.resource, i);
             resource.written = true;
             resource.finalContent = content_[use.version];
@@ -91,11 +94,14 @@ void Compiler::findLifetimes() {
     }
     for (uint32_t i = 1; i < result_->resources.size(); ++i) {
         CompiledResource& resource = result_->resources[i];
-        if (resource.origin == ResourceOrigin::Kept && resource.used) persistent_->touch(resource.persistent / 2);
+        if (resource.origin == ResourceOrigin::Kept && resource.used)
+            persistent_->touch(resource.persistent / 2);
         if (resource.origin == ResourceOrigin::HistoryCurrent && !resource.written)
             resource.aliasOf = graph_->resources()[i].previousHalf;
-        if (options_.keepAll && resource.firstPass != kNoIndex) resource.lastPass = uint32_t(result_->passes.size());
-        if (resource.isOutput && resource.firstPass != kNoIndex) resource.lastPass = uint32_t(result_->passes.size());
+        if (options_.keepAll && resource.firstPass != kNoIndex)
+            resource.lastPass = uint32_t(result_->passes.size());
+        if (resource.isOutput && resource.firstPass != kNoIndex)
+            resource.lastPass = uint32_t(result_->passes.size());
     }
 }
 
@@ -107,7 +113,8 @@ void Compiler::listResourcesOf(uint32_t passIndex, bool acquire, Range& range) {
         const CompiledResource& resource = result_->resources[use.resource];
         if ((acquire ? resource.firstPass : resource.lastPass) != passIndex) continue;
         bool listed = false; // a pass may use one resource in several ways
-        for (uint32_t i = range.first; i < result_->resourceLists.size(); ++i) listed |= result_->resourceLists[i] == use.resource;
+        for (uint32_t i = range.first; i < result_->resourceLists.size(); ++i)
+            listed |= result_->resourceLists[i] == use.resource;
         if (!listed) result_->resourceLists.push_back(use.resource);
     }
     range.count = uint32_t(result_->resourceLists.size()) - range.first;
@@ -116,7 +123,8 @@ void Compiler::listResourcesOf(uint32_t passIndex, bool acquire, Range& range) {
 uint32_t Compiler::takeSlot(const CompiledResource& resource) {
     auto& slots = result_->slots;
     for (uint32_t i = 0; i < slots.size(); ++i) {
-        const bool fits = slots[i].isBuffer == resource.isBuffer && slots[i].texture == resource.texture &&
+        const bool fits = slots[i].isBuffer == resource.isBuffer &&
+                          slots[i].texture == resource.texture &&
                           slots[i].buffer == resource.buffer;
         if (!fits || slotTaken_[i]) continue;
         slotTaken_[i] = 1;
@@ -139,7 +147,9 @@ void Compiler::assignSlots() {
             if (resource.origin == ResourceOrigin::Transient) resource.slot = takeSlot(resource);
         }
         for (const uint32_t index : result_->list(releases))
-            if (const uint32_t slot = result_->resources[index].slot; slot != kNoIndex && !options_.keepAll) slotTaken_[slot] = 0;
+            if (const uint32_t slot = result_->resources[index].slot;
+                slot != kNoIndex && !options_.keepAll)
+                slotTaken_[slot] = 0;
         result_->passes[i].acquires = acquires;
         result_->passes[i].releases = releases;
     }
@@ -152,8 +162,10 @@ void Compiler::listUntouchedOutputs() {
     for (uint32_t i = 1; i < result_->resources.size(); ++i) {
         const CompiledResource& resource = result_->resources[i];
         const uint32_t held = resource.aliasOf != kNoIndex ? resource.aliasOf : i;
-        const bool untouched = resource.firstPass == kNoIndex && result_->resources[held].firstPass == kNoIndex;
-        if (resource.isOutput && untouched && result_->resources[held].clearFirst) result_->resourceLists.push_back(held);
+        const bool untouched =
+            resource.firstPass == kNoIndex && result_->resources[held].firstPass == kNoIndex;
+        if (resource.isOutput && untouched && result_->resources[held].clearFirst)
+            result_->resourceLists.push_back(held);
     }
     range.count = uint32_t(result_->resourceLists.size()) - range.first;
 }
@@ -186,14 +198,19 @@ void Compiler::findBarriers() {
         for (const ResourceUse& use : result_->usesOf(pass)) {
             const StorageState& state = storage_[storageOf(use.resource)];
             const bool isBuffer = result_->resources[use.resource].isBuffer;
-            const bool stores = use.access == Access::StorageWrite; // must wait for every earlier use, not for stores alone
+            const bool stores =
+                use.access ==
+                Access::StorageWrite; // must wait for every earlier use, not for stores alone
             const int32_t since = stores ? state.lastAccess : state.lastStorageWrite;
             if (since < 0) continue;
-            const Access before = since == state.lastStorageWrite ? Access::StorageWrite : Access::Sampled;
-            for (uint32_t bits = barrierBits(before, use.access, isBuffer); bits != 0; bits &= bits - 1)
+            const Access before =
+                since == state.lastStorageWrite ? Access::StorageWrite : Access::Sampled;
+            for (uint32_t bits = barrierBits(before, use.access, isBuffer); bits != 0;
+                 bits &= bits - 1)
                 if (issued[std::countr_zero(bits)] <= since) pass.barriers |= bits & (~bits + 1);
         }
-        for (uint32_t bits = pass.barriers; bits != 0; bits &= bits - 1) issued[std::countr_zero(bits)] = int32_t(i);
+        for (uint32_t bits = pass.barriers; bits != 0; bits &= bits - 1)
+            issued[std::countr_zero(bits)] = int32_t(i);
         for (const ResourceUse& use : result_->usesOf(pass)) {
             StorageState& state = storage_[storageOf(use.resource)];
             state.lastAccess = int32_t(i);

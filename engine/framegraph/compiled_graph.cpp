@@ -26,7 +26,8 @@ const char* originName(ResourceOrigin origin) {
 
 uint64_t CompiledGraph::pooledBytes() const {
     uint64_t bytes = 0;
-    for (const PoolSlot& slot : slots) bytes += slot.isBuffer ? slot.buffer.bytes : byteSize(slot.texture);
+    for (const PoolSlot& slot : slots)
+        bytes += slot.isBuffer ? slot.buffer.bytes : byteSize(slot.texture);
     return bytes;
 }
 

@@ -3,8 +3,8 @@
 // Names and reasons point into the graph's arena and live until the next frame begins.
 
 #include <cstdint>
-#include <span>
 #include <source_location>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -49,10 +49,11 @@ struct Range {
 struct CompiledPass {
     std::string_view name;
     PassStatus status = PassStatus::Ran;
-    std::string_view reason;  // empty where it runs
-    uint32_t barriers = 0;    // GL memory barrier bits before it
-    Range uses;               // CompiledGraph::uses
-    Range acquires, releases; // CompiledGraph::resourceLists: resources that get and lose their storage here
+    std::string_view reason; // empty where it runs
+    uint32_t barriers = 0;   // GL memory barrier bits before it
+    Range uses;              // CompiledGraph::uses
+    Range acquires,
+        releases; // CompiledGraph::resourceLists: resources that get and lose their storage here
     const void* data = nullptr;
     ExecuteFunction execute = nullptr;
     std::source_location where;
@@ -66,16 +67,20 @@ struct CompiledResource {
     uint64_t bytes = 0;
     ResourceOrigin origin = ResourceOrigin::Transient;
     bool isOutput = false;
-    bool used = false;             // a pass that runs touches it, or its content is kept
-    bool written = false;          // by a pass that runs
-    bool clearFirst = false;       // must hold zeros when it gets its storage: its creator was skipped, a later pass writes
+    bool used = false;    // a pass that runs touches it, or its content is kept
+    bool written = false; // by a pass that runs
+    bool clearFirst =
+        false; // must hold zeros when it gets its storage: its creator was skipped, a later pass writes
     uint32_t firstPass = kNoIndex; // first and last pass that runs and uses it
     uint32_t lastPass = kNoIndex;
-    uint32_t slot = kNoIndex;      // Transient: storage, shared by resources with one description and disjoint lifetimes
-    uint32_t persistent = kNoIndex; // Kept, Persistent, History…: storage index of the PersistentTable
-    uint32_t aliasOf = kNoIndex;   // HistoryCurrent that no pass writes in this frame: index of its HistoryPrevious
-    uint32_t staticId = 0;         // Imported
-    uint64_t finalContent = 0;     // identifies its content at the end of the frame
+    uint32_t slot =
+        kNoIndex; // Transient: storage, shared by resources with one description and disjoint lifetimes
+    uint32_t persistent =
+        kNoIndex; // Kept, Persistent, History…: storage index of the PersistentTable
+    uint32_t aliasOf =
+        kNoIndex; // HistoryCurrent that no pass writes in this frame: index of its HistoryPrevious
+    uint32_t staticId = 0;     // Imported
+    uint64_t finalContent = 0; // identifies its content at the end of the frame
 };
 
 /// Storage that transient resources share.
@@ -87,13 +92,14 @@ struct PoolSlot {
 
 /// Vectors keep their capacity from frame to frame, so that compiling stops allocating after the first frames.
 struct CompiledGraph {
-    std::vector<CompiledPass> passes;         // in order of execution, which is the order of declaration
-    std::vector<CompiledResource> resources;  // index 0 is the null resource
+    std::vector<CompiledPass> passes; // in order of execution, which is the order of declaration
+    std::vector<CompiledResource> resources; // index 0 is the null resource
     std::vector<ResourceUse> uses;
     std::vector<uint32_t> resourceLists;
-    Range untouchedOutputs;                   // of resourceLists: outputs that must hold zeros and that no running pass uses
+    Range
+        untouchedOutputs; // of resourceLists: outputs that must hold zeros and that no running pass uses
     std::vector<PoolSlot> slots;
-    std::vector<std::string> errors;          // sentences; empty when the graph can run
+    std::vector<std::string> errors; // sentences; empty when the graph can run
 
     [[nodiscard]] std::span<const ResourceUse> usesOf(const CompiledPass& pass) const {
         return std::span(uses).subspan(pass.uses.first, pass.uses.count);

@@ -50,7 +50,8 @@ std::string dumpText(const CompiledGraph& graph) {
         append(text, "{:4} {:<8}{}", i, statusName(pass.status), pass.name);
         if (!pass.reason.empty()) append(text, " ({})", pass.reason);
         text += '\n';
-        if (pass.barriers != 0) append(text, "              barrier {}\n", barrierNames(pass.barriers));
+        if (pass.barriers != 0)
+            append(text, "              barrier {}\n", barrierNames(pass.barriers));
         for (const ResourceUse& use : graph.usesOf(pass))
             append(text, "              {:<5} {} [{}]\n", isWrite(use.access) ? "write" : "read",
                    graph.resources[use.resource].name, accessName(use.access));
@@ -58,12 +59,13 @@ std::string dumpText(const CompiledGraph& graph) {
     append(text, "{} resources\n", graph.resources.empty() ? 0 : graph.resources.size() - 1);
     for (size_t i = 1; i < graph.resources.size(); ++i) {
         const CompiledResource& resource = graph.resources[i];
-        append(text, "     {}: {}, {} bytes, {}, passes {}", resource.name, describe(resource), resource.bytes,
-               originName(resource.origin), lifetime(graph, resource));
+        append(text, "     {}: {}, {} bytes, {}, passes {}", resource.name, describe(resource),
+               resource.bytes, originName(resource.origin), lifetime(graph, resource));
         if (resource.slot != kNoIndex) append(text, ", slot {}", resource.slot);
         text += resource.isOutput ? ", output\n" : "\n";
     }
-    append(text, "{} bytes in {} pool slots ({} without sharing)\n", graph.pooledBytes(), graph.slots.size(), graph.unpooledBytes());
+    append(text, "{} bytes in {} pool slots ({} without sharing)\n", graph.pooledBytes(),
+           graph.slots.size(), graph.unpooledBytes());
     for (const std::string& error : graph.errors) append(text, "error: {}\n", error);
     return text;
 }
@@ -76,13 +78,16 @@ std::string dumpDot(const CompiledGraph& graph) {
         std::string label(pass.name);
         if (!ran) append(label, "\n{}: {}", statusName(pass.status), pass.reason);
         std::string escaped = quoted(label);
-        for (size_t at = escaped.find("\\u000a"); at != std::string::npos; at = escaped.find("\\u000a")) escaped.replace(at, 6, "\\n");
-        append(text, "    pass{} [shape=box, style=\"{}\", label={}];\n", i, ran ? "filled" : "dashed", escaped);
+        for (size_t at = escaped.find("\\u000a"); at != std::string::npos;
+             at = escaped.find("\\u000a"))
+            escaped.replace(at, 6, "\\n");
+        append(text, "    pass{} [shape=box, style=\"{}\", label={}];\n", i,
+               ran ? "filled" : "dashed", escaped);
     }
     for (size_t i = 1; i < graph.resources.size(); ++i) {
         const CompiledResource& resource = graph.resources[i];
-        append(text, "    resource{} [shape=ellipse{}, label={}];\n", i, resource.isOutput ? ", peripheries=2" : "",
-               quoted(resource.name));
+        append(text, "    resource{} [shape=ellipse{}, label={}];\n", i,
+               resource.isOutput ? ", peripheries=2" : "", quoted(resource.name));
     }
     for (size_t i = 0; i < graph.passes.size(); ++i)
         for (const ResourceUse& use : graph.usesOf(graph.passes[i])) {
@@ -95,24 +100,34 @@ std::string dumpDot(const CompiledGraph& graph) {
 }
 
 void appendPassJson(std::string& text, const CompiledGraph& graph, const CompiledPass& pass) {
-    append(text, "    {{\"name\": {}, \"status\": \"{}\", \"reason\": {}, \"barriers\": {}, \"uses\": [", quoted(pass.name),
-           statusName(pass.status), quoted(pass.reason), quoted(barrierNames(pass.barriers)));
+    append(text,
+           "    {{\"name\": {}, \"status\": \"{}\", \"reason\": {}, \"barriers\": {}, \"uses\": [",
+           quoted(pass.name), statusName(pass.status), quoted(pass.reason),
+           quoted(barrierNames(pass.barriers)));
     const char* separator = "";
     for (const ResourceUse& use : graph.usesOf(pass)) {
-        append(text, "{}{{\"resource\": {}, \"name\": {}, \"version\": {}, \"access\": \"{}\", \"write\": {}}}", separator,
-               use.resource - 1, quoted(graph.resources[use.resource].name), use.version, accessName(use.access),
-               isWrite(use.access));
+        append(
+            text,
+            "{}{{\"resource\": {}, \"name\": {}, \"version\": {}, \"access\": \"{}\", \"write\": {}}}",
+            separator, use.resource - 1, quoted(graph.resources[use.resource].name), use.version,
+            accessName(use.access), isWrite(use.access));
         separator = ", ";
     }
     text += "]}";
 }
 
 void appendResourceJson(std::string& text, const CompiledResource& resource) {
-    const auto number = [](uint32_t value) { return value == kNoIndex ? std::string("null") : std::to_string(value); };
-    append(text, "    {{\"name\": {}, \"kind\": \"{}\", \"description\": {}, \"bytes\": {}, \"origin\": \"{}\"", quoted(resource.name),
-           resource.isBuffer ? "buffer" : "texture", quoted(describe(resource)), resource.bytes, originName(resource.origin));
-    append(text, ", \"first_pass\": {}, \"last_pass\": {}, \"slot\": {}, \"output\": {}}}", number(resource.firstPass),
-           number(resource.lastPass), number(resource.slot), resource.isOutput);
+    const auto number = [](uint32_t value) {
+        return value == kNoIndex ? std::string("null") : std::to_string(value);
+    };
+    append(
+        text,
+        "    {{\"name\": {}, \"kind\": \"{}\", \"description\": {}, \"bytes\": {}, \"origin\": \"{}\"",
+        quoted(resource.name), resource.isBuffer ? "buffer" : "texture", quoted(describe(resource)),
+        resource.bytes, originName(resource.origin));
+    append(text, ", \"first_pass\": {}, \"last_pass\": {}, \"slot\": {}, \"output\": {}}}",
+           number(resource.firstPass), number(resource.lastPass), number(resource.slot),
+           resource.isOutput);
 }
 
 std::string dumpJson(const CompiledGraph& graph) {
@@ -126,8 +141,10 @@ std::string dumpJson(const CompiledGraph& graph) {
         appendResourceJson(text, graph.resources[i]);
         text += i + 1 < graph.resources.size() ? ",\n" : "\n";
     }
-    append(text, "  ],\n  \"pooled_bytes\": {}, \"unpooled_bytes\": {},\n  \"errors\": [", graph.pooledBytes(), graph.unpooledBytes());
-    for (size_t i = 0; i < graph.errors.size(); ++i) append(text, "{}{}", i == 0 ? "" : ", ", quoted(graph.errors[i]));
+    append(text, "  ],\n  \"pooled_bytes\": {}, \"unpooled_bytes\": {},\n  \"errors\": [",
+           graph.pooledBytes(), graph.unpooledBytes());
+    for (size_t i = 0; i < graph.errors.size(); ++i)
+        append(text, "{}{}", i == 0 ? "" : ", ", quoted(graph.errors[i]));
     return text + "]\n}\n";
 }
 
@@ -137,8 +154,10 @@ std::string barrierNames(uint32_t bits) {
     static constexpr struct {
         uint32_t bit;
         const char* name;
-    } kNames[] = {{0x1, "vertex"}, {0x2, "index"}, {0x4, "uniform"}, {0x8, "texture-fetch"}, {0x20, "image"}, {0x40, "command"},
-                  {0x100, "texture-update"}, {0x200, "buffer-update"}, {0x400, "framebuffer"}, {0x2000, "storage"}};
+    } kNames[] = {{0x1, "vertex"},           {0x2, "index"},           {0x4, "uniform"},
+                  {0x8, "texture-fetch"},    {0x20, "image"},          {0x40, "command"},
+                  {0x100, "texture-update"}, {0x200, "buffer-update"}, {0x400, "framebuffer"},
+                  {0x2000, "storage"}};
     std::string text;
     for (const auto& entry : kNames)
         if (bits & entry.bit) append(text, "{}{}", text.empty() ? "" : " ", entry.name);

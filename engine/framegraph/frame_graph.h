@@ -29,11 +29,15 @@ class PassContext;
 class Builder {
 public:
     /// The pass reads `handle`'s content. Returns the handle, to be stored in the pass's data.
-    virtual TextureHandle readTexture(TextureHandle handle, Access access, const std::source_location& where) = 0;
-    virtual BufferHandle readBuffer(BufferHandle handle, Access access, const std::source_location& where) = 0;
+    virtual TextureHandle readTexture(TextureHandle handle, Access access,
+                                      const std::source_location& where) = 0;
+    virtual BufferHandle readBuffer(BufferHandle handle, Access access,
+                                    const std::source_location& where) = 0;
     /// The pass writes to the resource; returns the next version, which later readers must use.
-    virtual TextureHandle writeTexture(TextureHandle handle, Access access, const std::source_location& where) = 0;
-    virtual BufferHandle writeBuffer(BufferHandle handle, Access access, const std::source_location& where) = 0;
+    virtual TextureHandle writeTexture(TextureHandle handle, Access access,
+                                       const std::source_location& where) = 0;
+    virtual BufferHandle writeBuffer(BufferHandle handle, Access access,
+                                     const std::source_location& where) = 0;
     /// A new transient resource, written first by this pass. Undefined content (NaN in poison mode).
     virtual TextureHandle createTexture(const char* name, const TextureDesc& desc, Access access,
                                         const std::source_location& where) = 0;
@@ -66,11 +70,13 @@ public:
                        const std::source_location& where = std::source_location::current()) {
         return writeBuffer(h, access, where);
     }
-    TextureHandle create(const char* name, const TextureDesc& desc, Access access = Access::StorageWrite,
+    TextureHandle create(const char* name, const TextureDesc& desc,
+                         Access access = Access::StorageWrite,
                          const std::source_location& where = std::source_location::current()) {
         return createTexture(name, desc, access, where);
     }
-    BufferHandle create(const char* name, const BufferDesc& desc, Access access = Access::StorageWrite,
+    BufferHandle create(const char* name, const BufferDesc& desc,
+                        Access access = Access::StorageWrite,
                         const std::source_location& where = std::source_location::current()) {
         return createBuffer(name, desc, access, where);
     }
@@ -87,7 +93,10 @@ struct Define {
 enum class CullMode : uint32_t { None = 0, Back = 1, Front = 2 };
 enum class BlendMode : uint32_t { Replace = 0, Premultiplied = 1, Add = 2 };
 enum class DepthMode : uint32_t { Off = 0, TestAndWrite = 1, Test = 2, TestEqual = 3 };
-enum class CompareMode : uint32_t { Greater = 0, Less = 1 }; // Greater: reversed z, of cameras and shadow maps; Less: plain z
+enum class CompareMode : uint32_t {
+    Greater = 0,
+    Less = 1
+}; // Greater: reversed z, of cameras and shadow maps; Less: plain z
 enum class Topology : uint32_t { Triangles = 0, Lines = 1, Points = 2 };
 
 /// Fixed-function state of one raster command.
@@ -118,8 +127,10 @@ class PassContext {
 public:
     // The plain interface; pass authors use the command objects below.
     virtual void beginCompute(const char* shader, const Define* defines, uint32_t defineCount) = 0;
-    virtual void beginRaster(const char* vertexShader, const char* fragmentShader, const Define* defines, uint32_t defineCount) = 0;
-    virtual void bindTexture(const char* name, TextureHandle handle, int32_t mip, int32_t layer) = 0;
+    virtual void beginRaster(const char* vertexShader, const char* fragmentShader,
+                             const Define* defines, uint32_t defineCount) = 0;
+    virtual void bindTexture(const char* name, TextureHandle handle, int32_t mip,
+                             int32_t layer) = 0;
     virtual void bindBuffer(const char* name, BufferHandle handle) = 0;
     virtual void bindStaticTexture(const char* name, StaticTexture texture) = 0;
     virtual void bindStaticBuffer(const char* name, StaticBuffer buffer) = 0;
@@ -135,13 +146,14 @@ public:
     virtual void viewport(int32_t x, int32_t y, int32_t width, int32_t height) = 0;
     virtual void rasterState(const RasterState& state) = 0;
     virtual void draw(uint32_t vertexCount, uint32_t instanceCount, uint32_t firstVertex) = 0;
-    virtual void drawGeometry(StaticGeometry geometry, uint32_t firstIndex, uint32_t indexCount, uint32_t instanceCount,
-                              uint32_t baseInstance) = 0;
+    virtual void drawGeometry(StaticGeometry geometry, uint32_t firstIndex, uint32_t indexCount,
+                              uint32_t instanceCount, uint32_t baseInstance) = 0;
     virtual void clearTexture(TextureHandle handle, const float rgba[4]) = 0;
     virtual void clearBuffer(BufferHandle handle, uint32_t value) = 0;
     virtual void copyTexture(TextureHandle from, TextureHandle to) = 0;
     /// CPU data into a declared buffer (through the ring; no stall).
-    virtual void upload(BufferHandle handle, uint64_t byteOffset, const void* data, size_t bytes) = 0;
+    virtual void upload(BufferHandle handle, uint64_t byteOffset, const void* data,
+                        size_t bytes) = 0;
     /// Orders the commands of this pass: what was written before is visible to `next` after.
     virtual void barrier(Access next) = 0;
     [[nodiscard]] virtual TextureDesc desc(TextureHandle handle) const = 0;
@@ -150,11 +162,11 @@ public:
     [[nodiscard]] virtual bool isAbsent(TextureHandle handle) const = 0;
     [[nodiscard]] virtual bool isAbsent(BufferHandle handle) const = 0;
 
-    template <size_t N>
-    ComputeCommand compute(const char* shader, const Define (&defines)[N]);
+    template <size_t N> ComputeCommand compute(const char* shader, const Define (&defines)[N]);
     ComputeCommand compute(const char* shader);
     template <size_t N>
-    RasterCommand raster(const char* vertexShader, const char* fragmentShader, const Define (&defines)[N]);
+    RasterCommand raster(const char* vertexShader, const char* fragmentShader,
+                         const Define (&defines)[N]);
     RasterCommand raster(const char* vertexShader, const char* fragmentShader);
 
 protected:
@@ -162,8 +174,7 @@ protected:
 };
 
 /// What compute and raster commands share: bindings. `Self` is the derived command.
-template <typename Self>
-class BoundCommand {
+template <typename Self> class BoundCommand {
 public:
     explicit BoundCommand(PassContext& context) : context_(&context) {}
     /// mip ≥ 0 binds that level alone; layer ≥ 0 that layer alone (needed to write images of arrays by layer).
@@ -171,15 +182,30 @@ public:
         context_->bindTexture(name, handle, mip, layer);
         return self();
     }
-    Self& bind(const char* name, BufferHandle handle) { context_->bindBuffer(name, handle); return self(); }
-    Self& bind(const char* name, StaticTexture texture) { context_->bindStaticTexture(name, texture); return self(); }
-    Self& bind(const char* name, StaticBuffer buffer) { context_->bindStaticBuffer(name, buffer); return self(); }
-    Self& set(const char* name, int value) { context_->uniformInt(name, value); return self(); }
-    Self& set(const char* name, float value) { context_->uniformFloat(name, value); return self(); }
+    Self& bind(const char* name, BufferHandle handle) {
+        context_->bindBuffer(name, handle);
+        return self();
+    }
+    Self& bind(const char* name, StaticTexture texture) {
+        context_->bindStaticTexture(name, texture);
+        return self();
+    }
+    Self& bind(const char* name, StaticBuffer buffer) {
+        context_->bindStaticBuffer(name, buffer);
+        return self();
+    }
+    Self& set(const char* name, int value) {
+        context_->uniformInt(name, value);
+        return self();
+    }
+    Self& set(const char* name, float value) {
+        context_->uniformFloat(name, value);
+        return self();
+    }
     /// A std140 struct of shaders/shared as the uniform block `Params` (or another block).
-    template <typename T>
-    Self& params(const T& values, const char* block = "Params") {
-        static_assert(std::is_trivially_copyable_v<T> && sizeof(T) % 16 == 0, "std140 blocks are padded to 16 bytes");
+    template <typename T> Self& params(const T& values, const char* block = "Params") {
+        static_assert(std::is_trivially_copyable_v<T> && sizeof(T) % 16 == 0,
+                      "std140 blocks are padded to 16 bytes");
         context_->uniformBlock(block, &values, sizeof values);
         return self();
     }
@@ -193,13 +219,17 @@ class ComputeCommand : public BoundCommand<ComputeCommand> {
 public:
     using BoundCommand::BoundCommand;
     void dispatch(uint32_t x, uint32_t y = 1, uint32_t z = 1) { context_->dispatch(x, y, z); }
-    void dispatchOver(uint32_t x, uint32_t y = 1, uint32_t z = 1) { context_->dispatchThreads(x, y, z); }
+    void dispatchOver(uint32_t x, uint32_t y = 1, uint32_t z = 1) {
+        context_->dispatchThreads(x, y, z);
+    }
     /// One thread a texel of mip 0.
     void dispatchOver(TextureHandle handle) {
         const TextureDesc d = context_->desc(handle);
         context_->dispatchThreads(uint32_t(d.width), uint32_t(d.height), uint32_t(d.depth));
     }
-    void dispatchIndirect(BufferHandle arguments, uint64_t byteOffset = 0) { context_->dispatchIndirect(arguments, byteOffset); }
+    void dispatchIndirect(BufferHandle arguments, uint64_t byteOffset = 0) {
+        context_->dispatchIndirect(arguments, byteOffset);
+    }
 };
 
 class RasterCommand : public BoundCommand<RasterCommand> {
@@ -210,11 +240,23 @@ public:
         context_->targets(targets, N, depth);
         return *this;
     }
-    RasterCommand& depthOnly(const Target& depth) { context_->targets(nullptr, 0, &depth); return *this; }
-    RasterCommand& viewport(int x, int y, int width, int height) { context_->viewport(x, y, width, height); return *this; }
-    RasterCommand& state(const RasterState& s) { context_->rasterState(s); return *this; }
-    void draw(uint32_t vertices, uint32_t instances = 1, uint32_t firstVertex = 0) { context_->draw(vertices, instances, firstVertex); }
-    void drawGeometry(StaticGeometry geometry, uint32_t firstIndex, uint32_t indexCount, uint32_t instances = 1, uint32_t baseInstance = 0) {
+    RasterCommand& depthOnly(const Target& depth) {
+        context_->targets(nullptr, 0, &depth);
+        return *this;
+    }
+    RasterCommand& viewport(int x, int y, int width, int height) {
+        context_->viewport(x, y, width, height);
+        return *this;
+    }
+    RasterCommand& state(const RasterState& s) {
+        context_->rasterState(s);
+        return *this;
+    }
+    void draw(uint32_t vertices, uint32_t instances = 1, uint32_t firstVertex = 0) {
+        context_->draw(vertices, instances, firstVertex);
+    }
+    void drawGeometry(StaticGeometry geometry, uint32_t firstIndex, uint32_t indexCount,
+                      uint32_t instances = 1, uint32_t baseInstance = 0) {
         context_->drawGeometry(geometry, firstIndex, indexCount, instances, baseInstance);
     }
 };
@@ -229,7 +271,8 @@ inline ComputeCommand PassContext::compute(const char* shader) {
     return ComputeCommand(*this);
 }
 template <size_t N>
-RasterCommand PassContext::raster(const char* vertexShader, const char* fragmentShader, const Define (&defines)[N]) {
+RasterCommand PassContext::raster(const char* vertexShader, const char* fragmentShader,
+                                  const Define (&defines)[N]) {
     beginRaster(vertexShader, fragmentShader, defines, uint32_t(N));
     return RasterCommand(*this);
 }
@@ -275,8 +318,10 @@ public:
     virtual PersistentBuffer persistentBuffer(const char* name, const BufferDesc& desc) = 0;
     /// Brings something registered with the executor under the graph's eyes: ordered, dumped, and an input of cached passes.
     /// `contentVersion` (core/version.h) changes whenever its content does.
-    virtual TextureHandle importTexture(const char* name, StaticTexture texture, const TextureDesc& desc, uint64_t contentVersion) = 0;
-    virtual BufferHandle importBuffer(const char* name, StaticBuffer buffer, const BufferDesc& desc, uint64_t contentVersion) = 0;
+    virtual TextureHandle importTexture(const char* name, StaticTexture texture,
+                                        const TextureDesc& desc, uint64_t contentVersion) = 0;
+    virtual BufferHandle importBuffer(const char* name, StaticBuffer buffer, const BufferDesc& desc,
+                                      uint64_t contentVersion) = 0;
     /// Content that must exist at the end: everything that it does not need is culled.
     virtual void markOutput(TextureHandle handle) = 0;
     virtual void markOutput(BufferHandle handle) = 0;
@@ -286,12 +331,15 @@ public:
     const Data& addPass(const char* name, Setup&& setup, Execute,
                         const std::source_location& where = std::source_location::current()) {
         static_assert(std::is_trivially_copyable_v<Data> && std::is_trivially_destructible_v<Data>);
-        static_assert(std::is_empty_v<Execute>, "execute must not capture: put what it needs into Data");
+        static_assert(std::is_empty_v<Execute>,
+                      "execute must not capture: put what it needs into Data");
         Builder& builder = beginPass(name, where);
         Data* data = static_cast<Data*>(allocate(sizeof(Data), alignof(Data)));
         new (data) Data{};
         setup(builder, *data);
-        endPass(data, [](const void* d, PassContext& context) { Execute{}(*static_cast<const Data*>(d), context); });
+        endPass(data, [](const void* d, PassContext& context) {
+            Execute{}(*static_cast<const Data*>(d), context);
+        });
         return *data;
     }
 

@@ -8,7 +8,8 @@ namespace tyndall::fg {
 
 std::string placeText(const std::source_location& where) {
     std::string_view file = where.file_name();
-    for (const std::string_view root : {"engine/", "plugins/", "tests/", "editor/"}) // as the repository names it
+    for (const std::string_view root :
+         {"engine/", "plugins/", "tests/", "editor/"}) // as the repository names it
         if (const size_t at = file.rfind(root); at != std::string_view::npos) {
             file.remove_prefix(at);
             break;
@@ -16,7 +17,9 @@ std::string placeText(const std::source_location& where) {
     return fmt::format("{}:{}", file, where.line());
 }
 
-FrameGraphImpl::FrameGraphImpl(PersistentTable& persistent) : persistent_(persistent) { beginFrame(); }
+FrameGraphImpl::FrameGraphImpl(PersistentTable& persistent) : persistent_(persistent) {
+    beginFrame();
+}
 
 void FrameGraphImpl::beginFrame() {
     recording_ = false; // a failed check may have left the setup of a pass
@@ -37,12 +40,14 @@ void FrameGraphImpl::beginFrame() {
 uint32_t FrameGraphImpl::versionOf(uint32_t resource, uint32_t number) const {
     if (resource == 0 || resource >= resources_.size()) return kNoIndex;
     uint32_t version = resources_[resource].latest;
-    while (version != kNoIndex && versions_[version].number > number) version = versions_[version].previous;
+    while (version != kNoIndex && versions_[version].number > number)
+        version = versions_[version].previous;
     return version != kNoIndex && versions_[version].number == number ? version : kNoIndex;
 }
 
 uint32_t FrameGraphImpl::contentVersion(uint32_t version) const {
-    while (versions_[version].skipped && versions_[version].previous != kNoIndex) version = versions_[version].previous;
+    while (versions_[version].skipped && versions_[version].previous != kNoIndex)
+        version = versions_[version].previous;
     return version;
 }
 
@@ -51,17 +56,23 @@ bool FrameGraphImpl::absent(uint32_t resource, uint32_t number) const {
     return version == kNoIndex || versions_[version].absent;
 }
 
-bool FrameGraphImpl::isAbsent(TextureHandle handle) const { return absent(handle.resource, handle.version); }
-bool FrameGraphImpl::isAbsent(BufferHandle handle) const { return absent(handle.resource, handle.version); }
+bool FrameGraphImpl::isAbsent(TextureHandle handle) const {
+    return absent(handle.resource, handle.version);
+}
+bool FrameGraphImpl::isAbsent(BufferHandle handle) const {
+    return absent(handle.resource, handle.version);
+}
 
 TextureDesc FrameGraphImpl::desc(TextureHandle handle) const {
-    CHECK(handle.resource != 0 && handle.resource < resources_.size() && !resources_[handle.resource].isBuffer,
+    CHECK(handle.resource != 0 && handle.resource < resources_.size() &&
+              !resources_[handle.resource].isBuffer,
           "desc() of a handle that is not a texture of this frame");
     return resources_[handle.resource].texture;
 }
 
 BufferDesc FrameGraphImpl::desc(BufferHandle handle) const {
-    CHECK(handle.resource != 0 && handle.resource < resources_.size() && resources_[handle.resource].isBuffer,
+    CHECK(handle.resource != 0 && handle.resource < resources_.size() &&
+              resources_[handle.resource].isBuffer,
           "desc() of a handle that is not a buffer of this frame");
     return resources_[handle.resource].buffer;
 }
@@ -71,7 +82,8 @@ TextureHandle FrameGraphImpl::findTexture(std::string_view name) const {
         if (resources_[i].isBuffer || resources_[i].name != name) continue;
         const uint32_t number = versions_[resources_[i].latest].number;
         // A history that nobody has written yet is known by its past.
-        if (resources_[i].origin == ResourceOrigin::HistoryCurrent && number == 0) return {resources_[i].previousHalf, 0};
+        if (resources_[i].origin == ResourceOrigin::HistoryCurrent && number == 0)
+            return {resources_[i].previousHalf, 0};
         return {i, number};
     }
     return {};
@@ -86,13 +98,15 @@ uint32_t FrameGraphImpl::addResource(const char* name, ResourceOrigin origin) {
     return uint32_t(resources_.size() - 1);
 }
 
-uint32_t FrameGraphImpl::addTexture(const char* name, ResourceOrigin origin, const TextureDesc& desc) {
+uint32_t FrameGraphImpl::addTexture(const char* name, ResourceOrigin origin,
+                                    const TextureDesc& desc) {
     const uint32_t index = addResource(name, origin);
     resources_[index].texture = desc;
     return index;
 }
 
-uint32_t FrameGraphImpl::addBuffer(const char* name, ResourceOrigin origin, const BufferDesc& desc) {
+uint32_t FrameGraphImpl::addBuffer(const char* name, ResourceOrigin origin,
+                                   const BufferDesc& desc) {
     const uint32_t index = addResource(name, origin);
     resources_[index].isBuffer = true;
     resources_[index].buffer = desc;
@@ -106,7 +120,9 @@ uint32_t FrameGraphImpl::addVersion(uint32_t resource, uint32_t writer) {
     version.resource = resource;
     version.writer = writer;
     version.previous = record.latest;
-    version.number = record.latest != kNoIndex ? versions_[record.latest].number + 1 : writer == kNoIndex ? 0 : 1;
+    version.number = record.latest != kNoIndex ? versions_[record.latest].number + 1
+                     : writer == kNoIndex      ? 0
+                                               : 1;
     record.latest = uint32_t(versions_.size());
     versions_.push_back(version);
     return record.latest;
@@ -114,8 +130,8 @@ uint32_t FrameGraphImpl::addVersion(uint32_t resource, uint32_t writer) {
 
 uint32_t FrameGraphImpl::persistentOf(const char* name, bool isBuffer) const {
     for (uint32_t i = 1; i < resources_.size(); ++i)
-        if (resources_[i].origin == ResourceOrigin::Persistent && resources_[i].isBuffer == isBuffer &&
-            resources_[i].name == name)
+        if (resources_[i].origin == ResourceOrigin::Persistent &&
+            resources_[i].isBuffer == isBuffer && resources_[i].name == name)
             return i;
     return 0;
 }
@@ -147,8 +163,10 @@ PersistentTexture FrameGraphImpl::persistentTexture(const char* name, const Text
         addVersion(resource, kNoIndex);
         checkDesc(resource, std::source_location::current());
     }
-    CHECK(resources_[resource].texture == desc, fmt::format("persistentTexture('{}') twice, with different sizes or formats", name));
-    return {{resource, versions_[resources_[resource].latest].number}, persistent_.entry(entry).content == 0};
+    CHECK(resources_[resource].texture == desc,
+          fmt::format("persistentTexture('{}') twice, with different sizes or formats", name));
+    return {{resource, versions_[resources_[resource].latest].number},
+            persistent_.entry(entry).content == 0};
 }
 
 PersistentBuffer FrameGraphImpl::persistentBuffer(const char* name, const BufferDesc& desc) {
@@ -160,12 +178,14 @@ PersistentBuffer FrameGraphImpl::persistentBuffer(const char* name, const Buffer
         addVersion(resource, kNoIndex);
         checkDesc(resource, std::source_location::current());
     }
-    CHECK(resources_[resource].buffer == desc, fmt::format("persistentBuffer('{}') twice, with different sizes", name));
-    return {{resource, versions_[resources_[resource].latest].number}, persistent_.entry(entry).content == 0};
+    CHECK(resources_[resource].buffer == desc,
+          fmt::format("persistentBuffer('{}') twice, with different sizes", name));
+    return {{resource, versions_[resources_[resource].latest].number},
+            persistent_.entry(entry).content == 0};
 }
 
-TextureHandle FrameGraphImpl::importTexture(const char* name, StaticTexture texture, const TextureDesc& desc,
-                                            uint64_t contentVersion) {
+TextureHandle FrameGraphImpl::importTexture(const char* name, StaticTexture texture,
+                                            const TextureDesc& desc, uint64_t contentVersion) {
     CHECK(texture.id != 0, fmt::format("importTexture('{}') of no texture", name));
     const uint32_t resource = addTexture(name, ResourceOrigin::Imported, desc);
     resources_[resource].staticId = texture.id;
@@ -174,8 +194,8 @@ TextureHandle FrameGraphImpl::importTexture(const char* name, StaticTexture text
     return {resource, 0};
 }
 
-BufferHandle FrameGraphImpl::importBuffer(const char* name, StaticBuffer buffer, const BufferDesc& desc,
-                                          uint64_t contentVersion) {
+BufferHandle FrameGraphImpl::importBuffer(const char* name, StaticBuffer buffer,
+                                          const BufferDesc& desc, uint64_t contentVersion) {
     CHECK(buffer.id != 0, fmt::format("importBuffer('{}') of no buffer", name));
     const uint32_t resource = addBuffer(name, ResourceOrigin::Imported, desc);
     resources_[resource].staticId = buffer.id;
@@ -190,15 +210,20 @@ void FrameGraphImpl::markOutput(uint32_t resource, uint32_t number) {
     resources_[resource].isOutput = true;
     outputs_.push_back(version);
 }
-void FrameGraphImpl::markOutput(TextureHandle handle) { markOutput(handle.resource, handle.version); }
-void FrameGraphImpl::markOutput(BufferHandle handle) { markOutput(handle.resource, handle.version); }
+void FrameGraphImpl::markOutput(TextureHandle handle) {
+    markOutput(handle.resource, handle.version);
+}
+void FrameGraphImpl::markOutput(BufferHandle handle) {
+    markOutput(handle.resource, handle.version);
+}
 
 // --- passes ---
 
 std::string_view FrameGraphImpl::passName() const { return passes_.back().name; }
 
 Builder& FrameGraphImpl::beginPass(const char* name, const std::source_location& where) {
-    CHECK(!recording_, fmt::format("pass '{}' is added inside the setup of pass '{}'", name, passName()));
+    CHECK(!recording_,
+          fmt::format("pass '{}' is added inside the setup of pass '{}'", name, passName()));
     recording_ = true;
     PassRecord& pass = passes_.emplace_back();
     pass.name = arena_.copy(name);
@@ -207,7 +232,9 @@ Builder& FrameGraphImpl::beginPass(const char* name, const std::source_location&
     return *this;
 }
 
-void* FrameGraphImpl::allocate(size_t bytes, size_t alignment) { return arena_.allocate(bytes, alignment); }
+void* FrameGraphImpl::allocate(size_t bytes, size_t alignment) {
+    return arena_.allocate(bytes, alignment);
+}
 
 void FrameGraphImpl::endPass(const void* data, ExecuteFunction execute) {
     CHECK(recording_, "endPass() without beginPass()");
@@ -241,22 +268,26 @@ void FrameGraphImpl::sideEffect() {
     passes_.back().sideEffect = true;
 }
 
-TextureHandle FrameGraphImpl::readTexture(TextureHandle handle, Access access, const std::source_location& where) {
+TextureHandle FrameGraphImpl::readTexture(TextureHandle handle, Access access,
+                                          const std::source_location& where) {
     read(handle.resource, handle.version, access, where);
     return handle;
 }
-BufferHandle FrameGraphImpl::readBuffer(BufferHandle handle, Access access, const std::source_location& where) {
+BufferHandle FrameGraphImpl::readBuffer(BufferHandle handle, Access access,
+                                        const std::source_location& where) {
     read(handle.resource, handle.version, access, where);
     return handle;
 }
-TextureHandle FrameGraphImpl::writeTexture(TextureHandle handle, Access access, const std::source_location& where) {
+TextureHandle FrameGraphImpl::writeTexture(TextureHandle handle, Access access,
+                                           const std::source_location& where) {
     return {handle.resource, write(handle.resource, handle.version, access, where)};
 }
-BufferHandle FrameGraphImpl::writeBuffer(BufferHandle handle, Access access, const std::source_location& where) {
+BufferHandle FrameGraphImpl::writeBuffer(BufferHandle handle, Access access,
+                                         const std::source_location& where) {
     return {handle.resource, write(handle.resource, handle.version, access, where)};
 }
-TextureHandle FrameGraphImpl::createTexture(const char* name, const TextureDesc& desc, Access access,
-                                            const std::source_location& where) {
+TextureHandle FrameGraphImpl::createTexture(const char* name, const TextureDesc& desc,
+                                            Access access, const std::source_location& where) {
     const uint32_t resource = addTexture(name, ResourceOrigin::Transient, desc);
     return {resource, create(resource, access, where)};
 }
@@ -266,7 +297,8 @@ BufferHandle FrameGraphImpl::createBuffer(const char* name, const BufferDesc& de
     return {resource, create(resource, access, where)};
 }
 
-uint32_t FrameGraphImpl::create(uint32_t resource, Access access, const std::source_location& where) {
+uint32_t FrameGraphImpl::create(uint32_t resource, Access access,
+                                const std::source_location& where) {
     CHECK(recording_, "create() outside of a setup");
     checkDesc(resource, where);
     checkAccess(resource, access, true, where);
@@ -281,12 +313,15 @@ uint32_t FrameGraphImpl::create(uint32_t resource, Access access, const std::sou
 uint32_t FrameGraphImpl::overwriterOf(uint32_t version) const {
     const uint32_t self = uint32_t(passes_.size() - 1);
     uint32_t overwriter = kNoIndex;
-    for (uint32_t newer = resources_[versions_[version].resource].latest; newer != version; newer = versions_[newer].previous)
-        if (!versions_[newer].skipped && versions_[newer].writer != self) overwriter = versions_[newer].writer;
+    for (uint32_t newer = resources_[versions_[version].resource].latest; newer != version;
+         newer = versions_[newer].previous)
+        if (!versions_[newer].skipped && versions_[newer].writer != self)
+            overwriter = versions_[newer].writer;
     return overwriter;
 }
 
-void FrameGraphImpl::read(uint32_t resource, uint32_t number, Access access, const std::source_location& where) {
+void FrameGraphImpl::read(uint32_t resource, uint32_t number, Access access,
+                          const std::source_location& where) {
     CHECK(recording_, "read() outside of a setup");
     if (!checkHandle(resource, number, "reads", where)) return;
     checkAccess(resource, access, false, where);
@@ -294,31 +329,36 @@ void FrameGraphImpl::read(uint32_t resource, uint32_t number, Access access, con
     const bool own = versions_[version].writer == passes_.size() - 1;
     const ResourceRecord& record = resources_[resource];
     if (record.origin == ResourceOrigin::HistoryCurrent && number == 0)
-        errors_.push_back(fmt::format("pass '{}' reads '{}', which no pass has written in this frame ({}): read the handle that the "
-                                      "write returned, or the history's previous",
-                                      passName(), record.name, placeText(where)));
+        errors_.push_back(fmt::format(
+            "pass '{}' reads '{}', which no pass has written in this frame ({}): read the handle that the "
+            "write returned, or the history's previous",
+            passName(), record.name, placeText(where)));
     if (const uint32_t overwriter = overwriterOf(version); overwriter != kNoIndex)
-        errors_.push_back(fmt::format("pass '{}' reads version {} of '{}' ({}), but pass '{}' has written over it: add the reader "
-                                      "before that pass, or read the newer handle",
-                                      passName(), number, record.name, placeText(where), passes_[overwriter].name));
+        errors_.push_back(fmt::format(
+            "pass '{}' reads version {} of '{}' ({}), but pass '{}' has written over it: add the reader "
+            "before that pass, or read the newer handle",
+            passName(), number, record.name, placeText(where), passes_[overwriter].name));
     uses_.push_back({version, access, own, where});
 }
 
-uint32_t FrameGraphImpl::write(uint32_t resource, uint32_t number, Access access, const std::source_location& where) {
+uint32_t FrameGraphImpl::write(uint32_t resource, uint32_t number, Access access,
+                               const std::source_location& where) {
     CHECK(recording_, "write() outside of a setup");
     if (!checkHandle(resource, number, "writes", where)) return number;
     checkAccess(resource, access, true, where);
     const uint32_t self = uint32_t(passes_.size() - 1);
     const uint32_t version = versionOf(resource, number);
-    if (versions_[version].writer == self) { // a second kind of write by the same pass makes no new version
+    if (versions_[version].writer ==
+        self) { // a second kind of write by the same pass makes no new version
         uses_.push_back({version, access, false, where});
         return number;
     }
     if (const uint32_t overwriter = overwriterOf(version); overwriter != kNoIndex)
-        errors_.push_back(fmt::format("passes '{}' ({}) and '{}' ({}) both write over version {} of '{}': the second must write "
-                                      "the handle that the first returned",
-                                      passes_[overwriter].name, placeText(passes_[overwriter].where), passName(), placeText(where),
-                                      number, resources_[resource].name));
+        errors_.push_back(fmt::format(
+            "passes '{}' ({}) and '{}' ({}) both write over version {} of '{}': the second must write "
+            "the handle that the first returned",
+            passes_[overwriter].name, placeText(passes_[overwriter].where), passName(),
+            placeText(where), number, resources_[resource].name));
     const uint32_t latest = resources_[resource].latest;
     if (versions_[latest].writer == self) { // written twice from one old handle: the same write
         uses_.push_back({latest, access, false, where});
@@ -331,54 +371,67 @@ uint32_t FrameGraphImpl::write(uint32_t resource, uint32_t number, Access access
 
 // --- checks ---
 
-bool FrameGraphImpl::checkHandle(uint32_t resource, uint32_t number, const char* verb, const std::source_location& where) {
+bool FrameGraphImpl::checkHandle(uint32_t resource, uint32_t number, const char* verb,
+                                 const std::source_location& where) {
     if (versionOf(resource, number) != kNoIndex) return true;
     if (resource == 0)
-        errors_.push_back(fmt::format("pass '{}' {} a null handle ({}): nothing has produced it", passName(), verb, placeText(where)));
+        errors_.push_back(fmt::format("pass '{}' {} a null handle ({}): nothing has produced it",
+                                      passName(), verb, placeText(where)));
     else
-        errors_.push_back(fmt::format("pass '{}' {} a handle (resource {}, version {}) that this frame does not have ({}): handles end "
-                                      "with their frame",
-                                      passName(), verb, resource, number, placeText(where)));
+        errors_.push_back(fmt::format(
+            "pass '{}' {} a handle (resource {}, version {}) that this frame does not have ({}): handles end "
+            "with their frame",
+            passName(), verb, resource, number, placeText(where)));
     return false;
 }
 
-void FrameGraphImpl::checkAccess(uint32_t resource, Access access, bool wantWrite, const std::source_location& where) {
+void FrameGraphImpl::checkAccess(uint32_t resource, Access access, bool wantWrite,
+                                 const std::source_location& where) {
     const ResourceRecord& record = resources_[resource];
     const bool depth = !record.isBuffer && record.texture.format == Format::Depth32F;
     const char* problem = nullptr;
     if (isWrite(access) != wantWrite) {
         problem = wantWrite ? "is an access that reads" : "is an access that writes";
     } else if (record.isBuffer) {
-        if (access == Access::ColorTarget || access == Access::DepthTarget || access == Access::DepthRead)
+        if (access == Access::ColorTarget || access == Access::DepthTarget ||
+            access == Access::DepthRead)
             problem = "needs a texture, and this is a buffer";
-    } else if (access == Access::Uniform || access == Access::Indirect || access == Access::Vertex) {
+    } else if (access == Access::Uniform || access == Access::Indirect ||
+               access == Access::Vertex) {
         problem = "needs a buffer, and this is a texture";
-    } else if (depth && (access == Access::ColorTarget || access == Access::StorageRead || access == Access::StorageWrite)) {
+    } else if (depth && (access == Access::ColorTarget || access == Access::StorageRead ||
+                         access == Access::StorageWrite)) {
         problem = "is not possible with a depth format";
     } else if (!depth && (access == Access::DepthTarget || access == Access::DepthRead)) {
         problem = "needs the format Depth32F";
     }
     if (problem)
-        errors_.push_back(fmt::format("pass '{}' declares '{}' as {} ({}), which {}", passName(), record.name, accessName(access),
-                                      placeText(where), problem));
+        errors_.push_back(fmt::format("pass '{}' declares '{}' as {} ({}), which {}", passName(),
+                                      record.name, accessName(access), placeText(where), problem));
 }
 
 void FrameGraphImpl::checkDesc(uint32_t resource, const std::source_location& where) {
     const ResourceRecord& record = resources_[resource];
     if (record.isBuffer) {
-        if (record.buffer.bytes == 0) errors_.push_back(fmt::format("buffer '{}' has no bytes ({})", record.name, placeText(where)));
+        if (record.buffer.bytes == 0)
+            errors_.push_back(
+                fmt::format("buffer '{}' has no bytes ({})", record.name, placeText(where)));
         return;
     }
     const TextureDesc& d = record.texture;
     if (d.width < 1 || d.height < 1 || d.depth < 1 || d.mips < 1)
-        errors_.push_back(fmt::format("texture '{}' is {}×{}×{} with {} mips ({}): each must be at least 1", record.name, d.width,
-                                      d.height, d.depth, d.mips, placeText(where)));
+        errors_.push_back(
+            fmt::format("texture '{}' is {}×{}×{} with {} mips ({}): each must be at least 1",
+                        record.name, d.width, d.height, d.depth, d.mips, placeText(where)));
     else if (d.kind == TextureKind::Tex2D && d.depth != 1)
-        errors_.push_back(fmt::format("texture '{}' is 2D but has depth {} ({}): make it an array or 3D", record.name, d.depth,
-                                      placeText(where)));
-    else if ((std::max({d.width, d.height, d.kind == TextureKind::Tex3D ? d.depth : 1}) >> (d.mips - 1)) == 0)
-        errors_.push_back(fmt::format("texture '{}' is {}×{} but has {} mips ({}), more than its size can have", record.name, d.width,
-                                      d.height, d.mips, placeText(where)));
+        errors_.push_back(
+            fmt::format("texture '{}' is 2D but has depth {} ({}): make it an array or 3D",
+                        record.name, d.depth, placeText(where)));
+    else if ((std::max({d.width, d.height, d.kind == TextureKind::Tex3D ? d.depth : 1}) >>
+              (d.mips - 1)) == 0)
+        errors_.push_back(
+            fmt::format("texture '{}' is {}×{} but has {} mips ({}), more than its size can have",
+                        record.name, d.width, d.height, d.mips, placeText(where)));
 }
 
 } // namespace tyndall::fg

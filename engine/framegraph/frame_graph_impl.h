@@ -18,11 +18,11 @@ namespace tyndall::fg {
 /// One state of a resource's content: as imported, or as a pass left it.
 struct VersionRecord {
     uint32_t resource = 0;
-    uint32_t number = 0;           // as in handles
-    uint32_t writer = kNoIndex;    // pass; kNoIndex: it came from outside
-    uint32_t previous = kNoIndex;  // index of the version that was overwritten
-    bool skipped = false;          // the writer was skipped: the content is that of `previous`
-    bool absent = false;           // holds nothing: created by a skipped pass and not written since
+    uint32_t number = 0;          // as in handles
+    uint32_t writer = kNoIndex;   // pass; kNoIndex: it came from outside
+    uint32_t previous = kNoIndex; // index of the version that was overwritten
+    bool skipped = false;         // the writer was skipped: the content is that of `previous`
+    bool absent = false;          // holds nothing: created by a skipped pass and not written since
 };
 
 struct ResourceRecord {
@@ -31,9 +31,9 @@ struct ResourceRecord {
     TextureDesc texture;
     BufferDesc buffer;
     ResourceOrigin origin = ResourceOrigin::Transient;
-    uint32_t latest = kNoIndex;     // index into versions
-    uint32_t creator = kNoIndex;    // pass, for transient resources
-    uint32_t persistent = kNoIndex; // storage index in the persistent table
+    uint32_t latest = kNoIndex;       // index into versions
+    uint32_t creator = kNoIndex;      // pass, for transient resources
+    uint32_t persistent = kNoIndex;   // storage index in the persistent table
     uint32_t previousHalf = kNoIndex; // HistoryCurrent: its HistoryPrevious
     uint32_t staticId = 0;
     uint64_t importedContent = 0;
@@ -42,9 +42,9 @@ struct ResourceRecord {
 
 /// One declared access, in order of declaration.
 struct UseRecord {
-    uint32_t version;  // index into versions: that is read, or that the write makes
+    uint32_t version; // index into versions: that is read, or that the write makes
     Access access;
-    bool ownVersion;   // reads what the same pass writes: no dependency
+    bool ownVersion; // reads what the same pass writes: no dependency
     std::source_location where;
 };
 
@@ -75,7 +75,8 @@ public:
     PersistentBuffer persistentBuffer(const char* name, const BufferDesc& desc) override;
     TextureHandle importTexture(const char* name, StaticTexture texture, const TextureDesc& desc,
                                 uint64_t contentVersion) override;
-    BufferHandle importBuffer(const char* name, StaticBuffer buffer, const BufferDesc& desc, uint64_t contentVersion) override;
+    BufferHandle importBuffer(const char* name, StaticBuffer buffer, const BufferDesc& desc,
+                              uint64_t contentVersion) override;
     void markOutput(TextureHandle handle) override;
     void markOutput(BufferHandle handle) override;
 
@@ -94,7 +95,8 @@ public:
     /// The version whose content `version` shows: itself, or what a skipped pass left alone.
     [[nodiscard]] uint32_t contentVersion(uint32_t version) const;
     /// The two texts as one that lives as long as the frame.
-    [[nodiscard]] std::string_view concatenateText(std::string_view first, std::string_view second) {
+    [[nodiscard]] std::string_view concatenateText(std::string_view first,
+                                                   std::string_view second) {
         return arena_.concatenate(first, second);
     }
 
@@ -103,10 +105,14 @@ private:
     void* allocate(size_t bytes, size_t alignment) override;
     void endPass(const void* data, ExecuteFunction execute) override;
 
-    TextureHandle readTexture(TextureHandle handle, Access access, const std::source_location& where) override;
-    BufferHandle readBuffer(BufferHandle handle, Access access, const std::source_location& where) override;
-    TextureHandle writeTexture(TextureHandle handle, Access access, const std::source_location& where) override;
-    BufferHandle writeBuffer(BufferHandle handle, Access access, const std::source_location& where) override;
+    TextureHandle readTexture(TextureHandle handle, Access access,
+                              const std::source_location& where) override;
+    BufferHandle readBuffer(BufferHandle handle, Access access,
+                            const std::source_location& where) override;
+    TextureHandle writeTexture(TextureHandle handle, Access access,
+                               const std::source_location& where) override;
+    BufferHandle writeBuffer(BufferHandle handle, Access access,
+                             const std::source_location& where) override;
     TextureHandle createTexture(const char* name, const TextureDesc& desc, Access access,
                                 const std::source_location& where) override;
     BufferHandle createBuffer(const char* name, const BufferDesc& desc, Access access,
@@ -121,13 +127,16 @@ private:
     uint32_t addVersion(uint32_t resource, uint32_t writer);
     uint32_t create(uint32_t resource, Access access, const std::source_location& where);
     void read(uint32_t resource, uint32_t number, Access access, const std::source_location& where);
-    uint32_t write(uint32_t resource, uint32_t number, Access access, const std::source_location& where);
+    uint32_t write(uint32_t resource, uint32_t number, Access access,
+                   const std::source_location& where);
     void markOutput(uint32_t resource, uint32_t number);
     [[nodiscard]] uint32_t overwriterOf(uint32_t version) const;
     [[nodiscard]] uint32_t persistentOf(const char* name, bool isBuffer) const;
-    bool checkHandle(uint32_t resource, uint32_t number, const char* verb, const std::source_location& where);
+    bool checkHandle(uint32_t resource, uint32_t number, const char* verb,
+                     const std::source_location& where);
     void checkDesc(uint32_t resource, const std::source_location& where);
-    void checkAccess(uint32_t resource, Access access, bool wantWrite, const std::source_location& where);
+    void checkAccess(uint32_t resource, Access access, bool wantWrite,
+                     const std::source_location& where);
     [[nodiscard]] bool absent(uint32_t resource, uint32_t number) const;
     [[nodiscard]] std::string_view passName() const;
 

@@ -22,8 +22,14 @@ struct BufferHandle {
 
 /// Immutable things that live longer than a frame and need no ordering: material textures, meshes,
 /// tables. Registered once with the executor; 0: none.
-struct StaticTexture { uint32_t id = 0; };
-struct StaticBuffer { uint32_t id = 0; };
-struct StaticGeometry { uint32_t id = 0; };
+struct StaticTexture {
+    uint32_t id = 0;
+};
+struct StaticBuffer {
+    uint32_t id = 0;
+};
+struct StaticGeometry {
+    uint32_t id = 0;
+};
 
 } // namespace tyndall::fg

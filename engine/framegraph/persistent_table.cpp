@@ -18,17 +18,21 @@ void PersistentTable::beginFrame() {
     }
 }
 
-uint32_t PersistentTable::findTexture(PersistentKind kind, std::string_view name, uint64_t salt, const TextureDesc& desc) {
+uint32_t PersistentTable::findTexture(PersistentKind kind, std::string_view name, uint64_t salt,
+                                      const TextureDesc& desc) {
     return find(kind, name, salt, false, desc, {});
 }
 
-uint32_t PersistentTable::findBuffer(PersistentKind kind, std::string_view name, uint64_t salt, const BufferDesc& desc) {
+uint32_t PersistentTable::findBuffer(PersistentKind kind, std::string_view name, uint64_t salt,
+                                     const BufferDesc& desc) {
     return find(kind, name, salt, true, {}, desc);
 }
 
-uint32_t PersistentTable::find(PersistentKind kind, std::string_view name, uint64_t salt, bool isBuffer,
-                               const TextureDesc& texture, const BufferDesc& buffer) {
-    const uint64_t key = mixHash(mixHash(hashName(name), salt), uint64_t(kind) * 2 + (isBuffer ? 1 : 0));
+uint32_t PersistentTable::find(PersistentKind kind, std::string_view name, uint64_t salt,
+                               bool isBuffer, const TextureDesc& texture,
+                               const BufferDesc& buffer) {
+    const uint64_t key =
+        mixHash(mixHash(hashName(name), salt), uint64_t(kind) * 2 + (isBuffer ? 1 : 0));
     const auto found = byKey_.find(key);
     if (found != byKey_.end()) {
         PersistentEntry& entry = entries_[found->second];
@@ -49,7 +53,8 @@ uint32_t PersistentTable::find(PersistentKind kind, std::string_view name, uint6
         free_.pop_back();
     }
     PersistentEntry& entry = entries_[index];
-    entry = {std::string(name), key, kind, isBuffer, texture, buffer, 0, 0, entry.generation + 1, frame_, true};
+    entry = {std::string(name),    key,    kind, isBuffer, texture, buffer, 0, 0,
+             entry.generation + 1, frame_, true};
     byKey_.emplace(key, index);
     return index;
 }
@@ -59,7 +64,8 @@ void PersistentTable::commit(const CompiledGraph& graph) {
         if (resource.persistent == kNoIndex || !resource.written) continue;
         PersistentEntry& entry = entries_[resource.persistent / 2];
         entry.content = resource.finalContent;
-        if (resource.origin == ResourceOrigin::HistoryCurrent) entry.previousHalf = resource.persistent % 2;
+        if (resource.origin == ResourceOrigin::HistoryCurrent)
+            entry.previousHalf = resource.persistent % 2;
     }
 }
 

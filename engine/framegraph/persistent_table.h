@@ -22,7 +22,8 @@ struct PersistentEntry {
     bool isBuffer = false;
     TextureDesc texture;
     BufferDesc buffer;
-    uint64_t content = 0;      // of the half that readers see; 0: nothing was written since creation or reset
+    uint64_t content =
+        0; // of the half that readers see; 0: nothing was written since creation or reset
     uint32_t previousHalf = 0; // History: the half that holds last frame's content
     uint32_t generation = 0;   // rises when the storage must be made anew
     uint64_t lastFrame = 0;    // in which it was declared or kept
@@ -40,8 +41,10 @@ public:
 
     /// The entry of this name, made or remade where the description differs. `salt` tells equal names apart. Kept entries
     /// must be touched as well, or they go.
-    uint32_t findTexture(PersistentKind kind, std::string_view name, uint64_t salt, const TextureDesc& desc);
-    uint32_t findBuffer(PersistentKind kind, std::string_view name, uint64_t salt, const BufferDesc& desc);
+    uint32_t findTexture(PersistentKind kind, std::string_view name, uint64_t salt,
+                         const TextureDesc& desc);
+    uint32_t findBuffer(PersistentKind kind, std::string_view name, uint64_t salt,
+                        const BufferDesc& desc);
     void touch(uint32_t index) { entries_[index].lastFrame = frame_; }
     [[nodiscard]] const PersistentEntry& entry(uint32_t index) const { return entries_[index]; }
     [[nodiscard]] const std::vector<PersistentEntry>& entries() const { return entries_; }
@@ -53,8 +56,8 @@ public:
     void forgetResults(); // Kept
 
 private:
-    uint32_t find(PersistentKind kind, std::string_view name, uint64_t salt, bool isBuffer, const TextureDesc& texture,
-                  const BufferDesc& buffer);
+    uint32_t find(PersistentKind kind, std::string_view name, uint64_t salt, bool isBuffer,
+                  const TextureDesc& texture, const BufferDesc& buffer);
     std::vector<PersistentEntry> entries_;
     std::unordered_map<uint64_t, uint32_t> byKey_;
     std::vector<uint32_t> free_;

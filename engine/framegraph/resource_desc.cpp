@@ -15,11 +15,12 @@ struct FormatInfo {
 };
 
 constexpr FormatInfo kFormats[] = {
-    {"R8", 1, false},      {"RGBA8", 4, false},   {"SRGBA8", 4, false},     {"RG16Snorm", 4, false},
-    {"RGBA16", 8, false},  {"R16F", 2, false},    {"RG16F", 4, false},      {"RGBA16F", 8, false},
-    {"R32F", 4, false},    {"RG32F", 8, false},   {"RGBA32F", 16, false},   {"R16UI", 2, true},
-    {"R32UI", 4, true},    {"RG32UI", 8, true},   {"RGBA32UI", 16, true},   {"R32I", 4, true},
-    {"R11G11B10F", 4, false}, {"Depth32F", 4, false},
+    {"R8", 1, false},        {"RGBA8", 4, false},      {"SRGBA8", 4, false},
+    {"RG16Snorm", 4, false}, {"RGBA16", 8, false},     {"R16F", 2, false},
+    {"RG16F", 4, false},     {"RGBA16F", 8, false},    {"R32F", 4, false},
+    {"RG32F", 8, false},     {"RGBA32F", 16, false},   {"R16UI", 2, true},
+    {"R32UI", 4, true},      {"RG32UI", 8, true},      {"RGBA32UI", 16, true},
+    {"R32I", 4, true},       {"R11G11B10F", 4, false}, {"Depth32F", 4, false},
 };
 
 const FormatInfo& info(Format format) {

@@ -6,9 +6,23 @@
 namespace tyndall::fg {
 
 enum class Format : uint32_t {
-    R8 = 0, RGBA8 = 1, SRGBA8 = 2, RG16Snorm = 3, RGBA16 = 4,
-    R16F = 5, RG16F = 6, RGBA16F = 7, R32F = 8, RG32F = 9, RGBA32F = 10,
-    R16UI = 11, R32UI = 12, RG32UI = 13, RGBA32UI = 14, R32I = 15, R11G11B10F = 16,
+    R8 = 0,
+    RGBA8 = 1,
+    SRGBA8 = 2,
+    RG16Snorm = 3,
+    RGBA16 = 4,
+    R16F = 5,
+    RG16F = 6,
+    RGBA16F = 7,
+    R32F = 8,
+    RG32F = 9,
+    RGBA32F = 10,
+    R16UI = 11,
+    R32UI = 12,
+    RG32UI = 13,
+    RGBA32UI = 14,
+    R32I = 15,
+    R11G11B10F = 16,
     Depth32F = 17,
 };
 

@@ -13,13 +13,15 @@ StoragePlace placeOf(const CompiledGraph& compiled, uint32_t index) {
     return {};
 }
 
-StoragePlace placeOf(const FrameGraphImpl& graph, const CompiledGraph& compiled, uint32_t index, uint32_t number) {
+StoragePlace placeOf(const FrameGraphImpl& graph, const CompiledGraph& compiled, uint32_t index,
+                     uint32_t number) {
     const uint32_t version = graph.versionOf(index, number);
     CHECK(version != kNoIndex, "a handle that is not of this frame");
     const VersionRecord& record = graph.versions()[graph.contentVersion(version)];
     if (record.absent) return {PlaceKind::Absent, 0};
     const ResourceRecord& resource = graph.resources()[index];
-    const bool past = resource.origin == ResourceOrigin::HistoryCurrent && record.writer == kNoIndex && number != 0;
+    const bool past = resource.origin == ResourceOrigin::HistoryCurrent &&
+                      record.writer == kNoIndex && number != 0;
     return placeOf(compiled, past ? resource.previousHalf : index);
 }
 

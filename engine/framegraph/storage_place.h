@@ -22,6 +22,7 @@ struct StoragePlace {
 /// The storage of a resource, whatever its version.
 StoragePlace placeOf(const CompiledGraph& compiled, uint32_t resource);
 /// The storage of one version: as above, but an absent version has a stand-in, and a history that a skipped pass left alone is its past.
-StoragePlace placeOf(const FrameGraphImpl& graph, const CompiledGraph& compiled, uint32_t resource, uint32_t version);
+StoragePlace placeOf(const FrameGraphImpl& graph, const CompiledGraph& compiled, uint32_t resource,
+                     uint32_t version);
 
 } // namespace tyndall::fg

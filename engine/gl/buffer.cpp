@@ -16,15 +16,19 @@ void forgetErrors() {
 
 } // namespace
 
-Result<Buffer> Buffer::create(std::string_view name, uint64_t bytes, BufferAccess access, const void* data) {
+Result<Buffer> Buffer::create(std::string_view name, uint64_t bytes, BufferAccess access,
+                              const void* data) {
     CHECK(bytes > 0, fmt::format("buffer '{}' needs a size", name));
-    constexpr uint64_t kMostBytes = uint64_t(1) << 46; // more than any GPU addresses; larger sizes overflow in drivers
+    constexpr uint64_t kMostBytes =
+        uint64_t(1) << 46; // more than any GPU addresses; larger sizes overflow in drivers
     if (bytes > kMostBytes)
-        return Error{fmt::format("buffer '{}' of {} bytes is larger than any GPU's memory", name, bytes)};
+        return Error{
+            fmt::format("buffer '{}' of {} bytes is larger than any GPU's memory", name, bytes)};
     GLuint id = 0;
     glCreateBuffers(1, &id);
     forgetErrors();
-    glNamedBufferStorage(id, GLsizeiptr(bytes), data, access == BufferAccess::CpuUpdates ? GL_DYNAMIC_STORAGE_BIT : 0);
+    glNamedBufferStorage(id, GLsizeiptr(bytes), data,
+                         access == BufferAccess::CpuUpdates ? GL_DYNAMIC_STORAGE_BIT : 0);
     if (glGetError() == GL_OUT_OF_MEMORY) {
         glDeleteBuffers(1, &id);
         return Error{fmt::format("buffer '{}': the GPU has no room for {} bytes", name, bytes)};
@@ -54,11 +58,14 @@ void Buffer::write(uint64_t offset, const void* data, uint64_t size) {
 void Buffer::copyFrom(GLuint source, uint64_t sourceOffset, uint64_t offset, uint64_t size) {
     CHECK(offset <= bytes() && size <= bytes() - offset,
           fmt::format("copy of {} bytes to {} of a buffer of {}", size, offset, bytes()));
-    if (size > 0) glCopyNamedBufferSubData(source, id(), GLintptr(sourceOffset), GLintptr(offset), GLsizeiptr(size));
+    if (size > 0)
+        glCopyNamedBufferSubData(source, id(), GLintptr(sourceOffset), GLintptr(offset),
+                                 GLsizeiptr(size));
 }
 
 void Buffer::clear(uint32_t value) {
-    CHECK(bytes() % 4 == 0, fmt::format("clear() of a buffer of {} bytes, which is no multiple of 4", bytes()));
+    CHECK(bytes() % 4 == 0,
+          fmt::format("clear() of a buffer of {} bytes, which is no multiple of 4", bytes()));
     glClearNamedBufferData(id(), GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT, &value);
 }
 
@@ -84,7 +91,8 @@ void UploadRing::map(uint64_t bytes) {
     object_ = Object(ObjectKind::Buffer, id, int64_t(bytes));
     object_.label(name_);
     memory_ = static_cast<std::byte*>(glMapNamedBufferRange(id, 0, GLsizeiptr(bytes), kFlags));
-    CHECK(memory_ != nullptr, fmt::format("ring '{}': the driver cannot map {} bytes", name_, bytes));
+    CHECK(memory_ != nullptr,
+          fmt::format("ring '{}': the driver cannot map {} bytes", name_, bytes));
     capacity_ = bytes;
     head_ = tail_ = 0;
 }
@@ -95,7 +103,8 @@ void UploadRing::freePassed() {
         frames_.pop_front();
         ++oldestFrame_;
     }
-    std::erase_if(retired_, [this](const Retired& retired) { return retired.frame < oldestFrame_; });
+    std::erase_if(retired_,
+                  [this](const Retired& retired) { return retired.frame < oldestFrame_; });
 }
 
 /// True when everything up to `end` fits behind the tail. Waits for a frame only when many are on their way: a ring
@@ -132,7 +141,8 @@ UploadRing::Slice UploadRing::allocate(uint64_t bytes, uint64_t alignment) {
         uint64_t position = head_ % capacity_;
         const uint64_t aligned = (position + alignment - 1) & ~(alignment - 1);
         if (aligned + bytes <= capacity_) return head_ + (aligned - position);
-        return head_ + (capacity_ - position); // the rest of the memory is too short: on to its start
+        return head_ +
+               (capacity_ - position); // the rest of the memory is too short: on to its start
     };
     if (!makeRoom(start() + bytes)) grow(bytes);
     const uint64_t begin = start();

@@ -26,9 +26,11 @@ public:
     /// Undefined content. CHECKs what create() reports.
     Buffer(std::string_view name, uint64_t bytes, BufferAccess access = BufferAccess::GpuOnly);
     /// A copy of `data`.
-    Buffer(std::string_view name, std::span<const std::byte> data, BufferAccess access = BufferAccess::GpuOnly);
+    Buffer(std::string_view name, std::span<const std::byte> data,
+           BufferAccess access = BufferAccess::GpuOnly);
     /// `data` may be null. Errors: the driver has no room for so many bytes. CHECKs: bytes > 0.
-    static Result<Buffer> create(std::string_view name, uint64_t bytes, BufferAccess access = BufferAccess::GpuOnly,
+    static Result<Buffer> create(std::string_view name, uint64_t bytes,
+                                 BufferAccess access = BufferAccess::GpuOnly,
                                  const void* data = nullptr);
 
     [[nodiscard]] GLuint id() const { return object_.id(); }
@@ -104,7 +106,8 @@ private:
     Object object_;
     std::byte* memory_ = nullptr;
     uint64_t capacity_ = 0;
-    uint64_t head_ = 0; // both grow without wrapping; the position in memory is the rest modulo capacity_
+    uint64_t head_ =
+        0; // both grow without wrapping; the position in memory is the rest modulo capacity_
     uint64_t tail_ = 0;
     uint64_t frame_ = 0;       // being recorded
     uint64_t oldestFrame_ = 0; // of frames_

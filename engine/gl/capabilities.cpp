@@ -86,7 +86,8 @@ Capabilities Capabilities::query(const std::set<std::string, std::less<>>& disab
 
 bool Capabilities::needs(Workaround workaround) const {
     for (const WorkaroundInfo& info : kWorkarounds)
-        if (info.workaround == workaround && renderer.find(info.renderer) != std::string::npos) return true;
+        if (info.workaround == workaround && renderer.find(info.renderer) != std::string::npos)
+            return true;
     return false;
 }
 

@@ -58,8 +58,12 @@ public:
     Limits limits;
 
     /// True when the driver has the extension and it was not switched off. Core features of 4.5 need no asking.
-    [[nodiscard]] bool has(std::string_view extension) const { return extensions_.contains(extension); }
-    [[nodiscard]] const std::set<std::string, std::less<>>& extensions() const { return extensions_; }
+    [[nodiscard]] bool has(std::string_view extension) const {
+        return extensions_.contains(extension);
+    }
+    [[nodiscard]] const std::set<std::string, std::less<>>& extensions() const {
+        return extensions_;
+    }
     [[nodiscard]] bool needs(Workaround workaround) const;
     /// A CPU does the work (llvmpipe, softpipe, swr).
     [[nodiscard]] bool isSoftware() const;

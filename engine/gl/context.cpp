@@ -30,7 +30,8 @@ Registry& registry() {
 }
 
 GLADapiproc loadFunction(void* platform, const char* name) {
-    return reinterpret_cast<GLADapiproc>(static_cast<ContextPlatform*>(platform)->getProcAddress(name));
+    return reinterpret_cast<GLADapiproc>(
+        static_cast<ContextPlatform*>(platform)->getProcAddress(name));
 }
 
 /// Points gl/api.h at the functions of the context that is current. Errors: fewer functions than OpenGL 4.5.
@@ -40,16 +41,20 @@ Result<void> loadFunctions(Context::State& state) {
     registry().functionsOf = 0;
     const int version = gladLoadGLUserPtr(loadFunction, state.platform.get());
     if (version < GLAD_MAKE_VERSION(4, 5)) {
-        if (version == 0) return Error{fmt::format("{}: the context has no OpenGL functions", state.platform->name())};
-        return Error{fmt::format("{}: the context has OpenGL {}.{}, and 4.5 is needed", state.platform->name(),
-                                 GLAD_VERSION_MAJOR(version), GLAD_VERSION_MINOR(version))};
+        if (version == 0)
+            return Error{
+                fmt::format("{}: the context has no OpenGL functions", state.platform->name())};
+        return Error{fmt::format("{}: the context has OpenGL {}.{}, and 4.5 is needed",
+                                 state.platform->name(), GLAD_VERSION_MAJOR(version),
+                                 GLAD_VERSION_MINOR(version))};
     }
     registry().functionsOf = state.serial;
     return {};
 }
 
 std::set<std::string, std::less<>> disabledExtensions(const ContextOptions& options) {
-    std::set<std::string, std::less<>> names(options.disabledExtensions.begin(), options.disabledExtensions.end());
+    std::set<std::string, std::less<>> names(options.disabledExtensions.begin(),
+                                             options.disabledExtensions.end());
     const char* listed = std::getenv("TYNDALL_GL_DISABLE");
     std::string name;
     for (const char* c = listed ? listed : ""; *c != '\0'; ++c) {
@@ -65,7 +70,8 @@ std::set<std::string, std::less<>> disabledExtensions(const ContextOptions& opti
 
 /// State that no pass ever changes.
 void setConventions() {
-    glClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE); // reversed depth needs all the precision of floats near 0
+    glClipControl(GL_LOWER_LEFT,
+                  GL_ZERO_TO_ONE); // reversed depth needs all the precision of floats near 0
     glEnable(GL_TEXTURE_CUBE_MAP_SEAMLESS);
     glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
     glPixelStorei(GL_PACK_ALIGNMENT, 1);
@@ -96,7 +102,8 @@ Result<Context> tryInOrder(std::span<const Candidate> candidates, const ContextO
     for (const Candidate& candidate : candidates) {
         Result<Context> context = candidate.make(options);
         if (context) return context;
-        failures += fmt::format("{}{} ({})", failures.empty() ? "" : ", ", candidate.name, context.message());
+        failures += fmt::format("{}{} ({})", failures.empty() ? "" : ", ", candidate.name,
+                                context.message());
     }
     return Error{fmt::format("no OpenGL 4.5 context could be made: {}", failures)};
 }
@@ -129,9 +136,11 @@ const Capabilities& currentCapabilities() {
 bool hasCurrentContext() { return gCurrent != nullptr; }
 
 Result<Context> Context::create(const ContextOptions& options) {
-    if (options.device >= 0 && options.backend != Backend::Osmesa) return createEglDevice(options.device, options);
-    static constexpr Candidate kAll[] = {
-        {"egl-device", makeOnHardware}, {"egl-surfaceless", createEglSurfaceless}, {"osmesa", createOsmesa}};
+    if (options.device >= 0 && options.backend != Backend::Osmesa)
+        return createEglDevice(options.device, options);
+    static constexpr Candidate kAll[] = {{"egl-device", makeOnHardware},
+                                         {"egl-surfaceless", createEglSurfaceless},
+                                         {"osmesa", createOsmesa}};
     std::span<const Candidate> candidates = kAll;
     if (options.backend == Backend::Egl) candidates = candidates.first(2);
     if (options.backend == Backend::Osmesa) candidates = candidates.last(1);
@@ -140,7 +149,8 @@ Result<Context> Context::create(const ContextOptions& options) {
     Result<Context> context = tryInOrder(candidates, options, failures);
     if (context && !failures.empty())
         context->state_->choice =
-            fmt::format("rendering with {} because these were not to be had: {}", context->backendName(), failures);
+            fmt::format("rendering with {} because these were not to be had: {}",
+                        context->backendName(), failures);
     return context;
 }
 
@@ -162,7 +172,8 @@ Result<Context> Context::createOsmesa(const ContextOptions& options) {
     return adopt(std::move(*platform), options);
 }
 
-Result<Context> Context::adopt(std::unique_ptr<ContextPlatform> platform, const ContextOptions& options) {
+Result<Context> Context::adopt(std::unique_ptr<ContextPlatform> platform,
+                               const ContextOptions& options) {
     CHECK(platform != nullptr, "adopt() needs a platform");
     // Only one context is current: the one before gives way first.
     if (gCurrent != nullptr) {
@@ -208,7 +219,8 @@ Context& Context::operator=(Context&& other) noexcept {
 Context::~Context() {
     if (!state_) return;
     if (state_->live.total() != 0)
-        log::error(fmt::format("GL objects were left when their context ended: {}", state_->live.describe()));
+        log::error(fmt::format("GL objects were left when their context ended: {}",
+                               state_->live.describe()));
     if (gCurrent == state_.get()) {
         glDebugMessageCallback(nullptr, nullptr);
         gCurrent->platform->releaseCurrent();

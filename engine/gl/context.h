@@ -69,7 +69,8 @@ public:
     static Result<Context> createOsmesa(const ContextOptions& options = {});
     /// Takes over a native context of another window system and makes it current.
     /// Errors: it is no OpenGL 4.5 core context, or cannot be made current.
-    static Result<Context> adopt(std::unique_ptr<ContextPlatform> platform, const ContextOptions& options);
+    static Result<Context> adopt(std::unique_ptr<ContextPlatform> platform,
+                                 const ContextOptions& options);
 
     Context() noexcept;
     Context(Context&&) noexcept;

@@ -45,9 +45,12 @@ void findSymbol(void* library, const char* name, Function& function, std::string
 }
 
 bool listed(std::string_view extensions, std::string_view name) {
-    for (size_t at = extensions.find(name); at != std::string_view::npos; at = extensions.find(name, at + 1)) {
+    for (size_t at = extensions.find(name); at != std::string_view::npos;
+         at = extensions.find(name, at + 1)) {
         const size_t end = at + name.size();
-        if ((at == 0 || extensions[at - 1] == ' ') && (end == extensions.size() || extensions[end] == ' ')) return true;
+        if ((at == 0 || extensions[at - 1] == ' ') &&
+            (end == extensions.size() || extensions[end] == ' '))
+            return true;
     }
     return false;
 }
@@ -57,8 +60,9 @@ EglLibrary openEgl() {
     // Mesa prints what it tried on the way to a driver; what matters is in the sentences returned here. A user's own
     // level stays.
     setenv("EGL_LOG_LEVEL", "fatal", 0);
-    void* library =
-        dlopen("libEGL.so.1", RTLD_NOW | RTLD_LOCAL); // never closed: drivers leave thread-local destructors behind
+    void* library = dlopen(
+        "libEGL.so.1",
+        RTLD_NOW | RTLD_LOCAL); // never closed: drivers leave thread-local destructors behind
     if (library == nullptr) {
         egl.failure = "libEGL.so.1 is not installed";
         return egl;
@@ -78,14 +82,15 @@ EglLibrary openEgl() {
     const char* extensions = egl.queryString(EGL_NO_DISPLAY, EGL_EXTENSIONS);
     egl.clientExtensions = extensions ? extensions : "";
     if (listed(egl.clientExtensions, "EGL_EXT_platform_base"))
-        egl.getPlatformDisplay =
-            reinterpret_cast<PFNEGLGETPLATFORMDISPLAYEXTPROC>(egl.getProcAddress("eglGetPlatformDisplayEXT"));
+        egl.getPlatformDisplay = reinterpret_cast<PFNEGLGETPLATFORMDISPLAYEXTPROC>(
+            egl.getProcAddress("eglGetPlatformDisplayEXT"));
     if (egl.getPlatformDisplay == nullptr) egl.failure = "libEGL lacks EGL_EXT_platform_base";
     if (listed(egl.clientExtensions, "EGL_EXT_device_enumeration") ||
         listed(egl.clientExtensions, "EGL_EXT_device_base")) {
-        egl.queryDevices = reinterpret_cast<PFNEGLQUERYDEVICESEXTPROC>(egl.getProcAddress("eglQueryDevicesEXT"));
-        egl.queryDeviceString =
-            reinterpret_cast<PFNEGLQUERYDEVICESTRINGEXTPROC>(egl.getProcAddress("eglQueryDeviceStringEXT"));
+        egl.queryDevices =
+            reinterpret_cast<PFNEGLQUERYDEVICESEXTPROC>(egl.getProcAddress("eglQueryDevicesEXT"));
+        egl.queryDeviceString = reinterpret_cast<PFNEGLQUERYDEVICESTRINGEXTPROC>(
+            egl.getProcAddress("eglQueryDeviceStringEXT"));
     }
     return egl;
 }
@@ -131,7 +136,8 @@ Result<std::shared_ptr<Display>> openDisplay(EGLenum platform, void* native, con
     const EglLibrary& egl = eglLibrary();
     const EGLDisplay handle = egl.getPlatformDisplay(platform, native, nullptr);
     if (handle == EGL_NO_DISPLAY)
-        return Error{fmt::format("{}: EGL gives no display ({})", name, eglErrorName(egl.getError()))};
+        return Error{
+            fmt::format("{}: EGL gives no display ({})", name, eglErrorName(egl.getError()))};
     std::lock_guard lock(mutex);
     if (std::shared_ptr<Display> display = open[handle].lock()) return display;
     EGLint major = 0, minor = 0;
@@ -152,11 +158,14 @@ public:
     [[nodiscard]] Result<void> makeCurrent() override {
         const EglLibrary& egl = eglLibrary();
         egl.bindApi(EGL_OPENGL_API);
-        if (egl.makeCurrent(display_->handle(), EGL_NO_SURFACE, EGL_NO_SURFACE, context_)) return {};
-        return Error{fmt::format("{}: EGL cannot make the context current ({})", name_, eglErrorName(egl.getError()))};
+        if (egl.makeCurrent(display_->handle(), EGL_NO_SURFACE, EGL_NO_SURFACE, context_))
+            return {};
+        return Error{fmt::format("{}: EGL cannot make the context current ({})", name_,
+                                 eglErrorName(egl.getError()))};
     }
     void releaseCurrent() override {
-        eglLibrary().makeCurrent(display_->handle(), EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
+        eglLibrary().makeCurrent(display_->handle(), EGL_NO_SURFACE, EGL_NO_SURFACE,
+                                 EGL_NO_CONTEXT);
     }
     [[nodiscard]] void* getProcAddress(const char* function) override {
         return reinterpret_cast<void*>(eglLibrary().getProcAddress(function));
@@ -169,24 +178,29 @@ private:
 };
 
 /// Any configuration that OpenGL can use: nothing is drawn to a surface.
-Result<EGLConfig> chooseConfig(const Display& display, std::string_view extensions, const char* name) {
-    if (listed(extensions, "EGL_KHR_no_config_context")) return EGLConfig(nullptr); // EGL_NO_CONFIG_KHR
+Result<EGLConfig> chooseConfig(const Display& display, std::string_view extensions,
+                               const char* name) {
+    if (listed(extensions, "EGL_KHR_no_config_context"))
+        return EGLConfig(nullptr); // EGL_NO_CONFIG_KHR
     const EglLibrary& egl = eglLibrary();
-    const EGLint attributes[] = {EGL_SURFACE_TYPE, EGL_DONT_CARE, EGL_RENDERABLE_TYPE, EGL_OPENGL_BIT, EGL_NONE};
+    const EGLint attributes[] = {EGL_SURFACE_TYPE, EGL_DONT_CARE, EGL_RENDERABLE_TYPE,
+                                 EGL_OPENGL_BIT, EGL_NONE};
     EGLConfig config = nullptr;
     EGLint count = 0;
-    if (egl.chooseConfig(display.handle(), attributes, &config, 1, &count) && count > 0) return config;
+    if (egl.chooseConfig(display.handle(), attributes, &config, 1, &count) && count > 0)
+        return config;
     return Error{fmt::format("{}: EGL has no configuration for OpenGL", name)};
 }
 
-Result<std::unique_ptr<ContextPlatform>> makePlatform(std::shared_ptr<Display> display, const char* name,
-                                                      DebugMode debug) {
+Result<std::unique_ptr<ContextPlatform>> makePlatform(std::shared_ptr<Display> display,
+                                                      const char* name, DebugMode debug) {
     const EglLibrary& egl = eglLibrary();
     const char* text = egl.queryString(display->handle(), EGL_EXTENSIONS);
     const std::string extensions = text ? text : "";
     if (!listed(extensions, "EGL_KHR_surfaceless_context"))
-        return Error{
-            fmt::format("{}: EGL lacks EGL_KHR_surfaceless_context, so there is no context without a surface", name)};
+        return Error{fmt::format(
+            "{}: EGL lacks EGL_KHR_surfaceless_context, so there is no context without a surface",
+            name)};
     if (!egl.bindApi(EGL_OPENGL_API))
         return Error{fmt::format("{}: this EGL has OpenGL ES only, and OpenGL is needed", name)};
     const Result<EGLConfig> config = chooseConfig(*display, extensions, name);
@@ -200,11 +214,13 @@ Result<std::unique_ptr<ContextPlatform>> makePlatform(std::shared_ptr<Display> d
                                  EGL_CONTEXT_OPENGL_DEBUG,
                                  debug == DebugMode::Off ? EGL_FALSE : EGL_TRUE,
                                  EGL_NONE};
-    const EGLContext context = egl.createContext(display->handle(), *config, EGL_NO_CONTEXT, attributes);
+    const EGLContext context =
+        egl.createContext(display->handle(), *config, EGL_NO_CONTEXT, attributes);
     if (context == EGL_NO_CONTEXT)
-        return Error{
-            fmt::format("{}: the driver refuses an OpenGL 4.5 core context ({})", name, eglErrorName(egl.getError()))};
-    return std::unique_ptr<ContextPlatform>(std::make_unique<EglPlatform>(name, std::move(display), context));
+        return Error{fmt::format("{}: the driver refuses an OpenGL 4.5 core context ({})", name,
+                                 eglErrorName(egl.getError()))};
+    return std::unique_ptr<ContextPlatform>(
+        std::make_unique<EglPlatform>(name, std::move(display), context));
 }
 
 Result<std::vector<EGLDeviceEXT>> deviceHandles() {
@@ -235,9 +251,12 @@ Result<std::vector<EglDevice>> eglDevices() {
         const char* text = egl.queryDeviceString(handle, EGL_EXTENSIONS);
         const std::string_view extensions = text ? text : "";
         device.software = listed(extensions, "EGL_MESA_device_software");
-        const char* file =
-            listed(extensions, "EGL_EXT_device_drm") ? egl.queryDeviceString(handle, EGL_DRM_DEVICE_FILE_EXT) : nullptr;
-        device.description = device.software ? "software" : file ? file : fmt::format("EGL device {}", device.index);
+        const char* file = listed(extensions, "EGL_EXT_device_drm")
+                               ? egl.queryDeviceString(handle, EGL_DRM_DEVICE_FILE_EXT)
+                               : nullptr;
+        device.description = device.software ? "software"
+                             : file          ? file
+                                             : fmt::format("EGL device {}", device.index);
         devices.push_back(std::move(device));
     }
     return devices;
@@ -247,8 +266,8 @@ Result<std::unique_ptr<ContextPlatform>> makeEglDevicePlatform(int index, DebugM
     const Result<std::vector<EGLDeviceEXT>> handles = deviceHandles();
     if (!handles) return handles.error();
     if (index < 0 || size_t(index) >= handles->size())
-        return Error{fmt::format("device {} does not exist: EGL lists {} device{}, counted from 0", index,
-                                 handles->size(), handles->size() == 1 ? "" : "s")};
+        return Error{fmt::format("device {} does not exist: EGL lists {} device{}, counted from 0",
+                                 index, handles->size(), handles->size() == 1 ? "" : "s")};
     if (!listed(eglLibrary().clientExtensions, "EGL_EXT_platform_device"))
         return Error{"libEGL lacks EGL_EXT_platform_device"};
     Result<std::shared_ptr<Display>> display =

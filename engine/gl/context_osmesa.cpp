@@ -29,7 +29,8 @@ using OsmesaContext = void*;
 struct OsmesaLibrary {
     OsmesaContext (*createContextAttribs)(const int* attributes, OsmesaContext shared) = nullptr;
     void (*destroyContext)(OsmesaContext) = nullptr;
-    unsigned char (*makeCurrent)(OsmesaContext, void* buffer, GLenum type, GLsizei width, GLsizei height) = nullptr;
+    unsigned char (*makeCurrent)(OsmesaContext, void* buffer, GLenum type, GLsizei width,
+                                 GLsizei height) = nullptr;
     void* (*getProcAddress)(const char* name) = nullptr;
     std::string failure; // a sentence when the library cannot be used
 };
@@ -68,7 +69,8 @@ public:
 
     [[nodiscard]] const char* name() const override { return "osmesa"; }
     [[nodiscard]] Result<void> makeCurrent() override {
-        if (osmesaLibrary().makeCurrent(context_, pixels_.data(), GL_UNSIGNED_BYTE, kSize, kSize)) return {};
+        if (osmesaLibrary().makeCurrent(context_, pixels_.data(), GL_UNSIGNED_BYTE, kSize, kSize))
+            return {};
         return Error{"osmesa: the context cannot be made current"};
     }
     void releaseCurrent() override { osmesaLibrary().makeCurrent(nullptr, nullptr, 0, 0, 0); }

@@ -14,8 +14,10 @@ namespace {
 constexpr HarmlessMessage kHarmless[] = {
     {"", GL_DEBUG_SOURCE_APPLICATION, GL_DEBUG_TYPE_PUSH_GROUP, 0, "", "our own debug group opens"},
     {"", GL_DEBUG_SOURCE_APPLICATION, GL_DEBUG_TYPE_POP_GROUP, 0, "", "our own debug group closes"},
-    {"NVIDIA", GL_DEBUG_SOURCE_API, GL_DEBUG_TYPE_OTHER, 131185, "", "tells in which memory a buffer lies"},
-    {"NVIDIA", GL_DEBUG_SOURCE_API, GL_DEBUG_TYPE_OTHER, 131169, "", "tells how a framebuffer is stored"},
+    {"NVIDIA", GL_DEBUG_SOURCE_API, GL_DEBUG_TYPE_OTHER, 131185, "",
+     "tells in which memory a buffer lies"},
+    {"NVIDIA", GL_DEBUG_SOURCE_API, GL_DEBUG_TYPE_OTHER, 131169, "",
+     "tells how a framebuffer is stored"},
     {"NVIDIA", GL_DEBUG_SOURCE_API, GL_DEBUG_TYPE_OTHER, 131204, "",
      "a unit holds a texture without the mips that its sampler filters; no program reads it"},
     {"NVIDIA", GL_DEBUG_SOURCE_API, GL_DEBUG_TYPE_PERFORMANCE, 131154, "",
@@ -57,7 +59,8 @@ const char* typeName(GLenum type) {
     }
 }
 
-bool isHarmless(std::string_view driver, GLenum source, GLenum type, GLuint id, std::string_view text) {
+bool isHarmless(std::string_view driver, GLenum source, GLenum type, GLuint id,
+                std::string_view text) {
     for (const HarmlessMessage& row : kHarmless) {
         if (driver.find(row.vendor) == std::string_view::npos) continue;
         if (row.source != GL_DONT_CARE && row.source != source) continue;
@@ -91,11 +94,12 @@ struct DebugLog::State {
         std::string place;
         for (const std::string& group : openGroups()) place += (place.empty() ? "" : " > ") + group;
         while (!text.empty() && (text.back() == '\n' || text.back() == ' ')) text.remove_suffix(1);
-        const std::string sentence =
-            fmt::format("GL {} {}{}{}: {}", typeName(type), id, place.empty() ? "" : " in ", place, text);
+        const std::string sentence = fmt::format("GL {} {}{}{}: {}", typeName(type), id,
+                                                 place.empty() ? "" : " in ", place, text);
         {
             std::lock_guard lock(mutex);
-            const bool mayDrop = severity != Severity::High || source == GL_DEBUG_SOURCE_SHADER_COMPILER;
+            const bool mayDrop =
+                severity != Severity::High || source == GL_DEBUG_SOURCE_SHADER_COMPILER;
             if (mayDrop && isHarmless(driver, source, type, id, text)) {
                 ++dropped;
                 return;
@@ -110,8 +114,10 @@ struct DebugLog::State {
 namespace {
 void GLAD_API_PTR onMessage(GLenum source, GLenum type, GLuint id, GLenum severity, GLsizei length,
                             const GLchar* message, const void* state) {
-    const std::string_view text = length >= 0 ? std::string_view(message, size_t(length)) : std::string_view(message);
-    static_cast<DebugLog::State*>(const_cast<void*>(state))->receive(source, type, id, severity, text);
+    const std::string_view text =
+        length >= 0 ? std::string_view(message, size_t(length)) : std::string_view(message);
+    static_cast<DebugLog::State*>(const_cast<void*>(state))
+        ->receive(source, type, id, severity, text);
 }
 } // namespace
 

@@ -45,7 +45,8 @@ constexpr FormatInfo kFormats[] = {
 const FormatInfo& formatInfo(GLenum internalFormat) {
     for (const FormatInfo& info : kFormats)
         if (info.internalFormat == internalFormat) return info;
-    CHECK(false, fmt::format("internal format {:#x} is not in the table of format.cpp", internalFormat));
+    CHECK(false,
+          fmt::format("internal format {:#x} is not in the table of format.cpp", internalFormat));
     return kFormats[0];
 }
 

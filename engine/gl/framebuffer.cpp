@@ -11,7 +11,8 @@ void attach(GLuint framebuffer, GLenum point, const Attachment& attachment) {
     const Texture& texture = *attachment.texture;
     const bool layered = texture.spec().target != GL_TEXTURE_2D;
     if (layered && attachment.layer >= 0)
-        glNamedFramebufferTextureLayer(framebuffer, point, texture.id(), attachment.mip, attachment.layer);
+        glNamedFramebufferTextureLayer(framebuffer, point, texture.id(), attachment.mip,
+                                       attachment.layer);
     else
         glNamedFramebufferTexture(framebuffer, point, texture.id(), attachment.mip);
 }
@@ -21,7 +22,8 @@ const char* statusName(GLenum status) {
     case GL_FRAMEBUFFER_INCOMPLETE_ATTACHMENT: return "an attachment cannot be drawn to";
     case GL_FRAMEBUFFER_INCOMPLETE_MISSING_ATTACHMENT: return "nothing is attached";
     case GL_FRAMEBUFFER_INCOMPLETE_LAYER_TARGETS: return "layered and other attachments are mixed";
-    case GL_FRAMEBUFFER_UNSUPPORTED: return "the driver does not support this combination of formats";
+    case GL_FRAMEBUFFER_UNSUPPORTED:
+        return "the driver does not support this combination of formats";
     default: return "it is incomplete";
     }
 }
@@ -30,9 +32,9 @@ std::string describe(std::span<const Attachment> colors, const Attachment* depth
     std::string text;
     const auto add = [&](const Attachment& attachment) {
         const TextureSpec& spec = attachment.texture->spec();
-        text +=
-            fmt::format("{}{} {}x{}x{} mip {} layer {}", text.empty() ? "" : ", ", formatInfo(spec.internalFormat).name,
-                        spec.width, spec.height, spec.depth, attachment.mip, attachment.layer);
+        text += fmt::format("{}{} {}x{}x{} mip {} layer {}", text.empty() ? "" : ", ",
+                            formatInfo(spec.internalFormat).name, spec.width, spec.height,
+                            spec.depth, attachment.mip, attachment.layer);
     };
     for (const Attachment& color : colors) add(color);
     if (depth != nullptr) add(*depth);
@@ -78,13 +80,16 @@ GLuint FramebufferCache::get(std::span<const Attachment> colors, const Attachmen
 
 void FramebufferCache::forget(const Texture& texture) {
     std::erase_if(entries_, [&](const auto& entry) {
-        return std::ranges::any_of(entry.first, [&](const Part& part) { return part.serial == texture.serial(); });
+        return std::ranges::any_of(
+            entry.first, [&](const Part& part) { return part.serial == texture.serial(); });
     });
 }
 
 void FramebufferCache::endFrame() {
     ++frame_;
-    std::erase_if(entries_, [this](const auto& entry) { return frame_ - entry.second.lastUsed > kKeptFrames; });
+    std::erase_if(entries_, [this](const auto& entry) {
+        return frame_ - entry.second.lastUsed > kKeptFrames;
+    });
 }
 
 } // namespace tyndall::gl

@@ -70,9 +70,11 @@ size_t GpuTimer::begin(std::string_view name) {
 }
 
 void GpuTimer::end(size_t span) {
-    CHECK(recording_ && span < current_.spans.size(), fmt::format("span {} ends, of {}", span, current_.spans.size()));
+    CHECK(recording_ && span < current_.spans.size(),
+          fmt::format("span {} ends, of {}", span, current_.spans.size()));
     if (!timing_) return;
-    CHECK(!current_.spans[span].end, fmt::format("span '{}' ends twice", current_.spans[span].name));
+    CHECK(!current_.spans[span].end,
+          fmt::format("span '{}' ends twice", current_.spans[span].name));
     current_.spans[span].end = stamp();
 }
 
@@ -80,7 +82,8 @@ void GpuTimer::endFrame() {
     CHECK(recording_, "endFrame() without beginFrame()");
     recording_ = false;
     if (!timing_) return;
-    for (const Span& span : current_.spans) CHECK(span.end, fmt::format("span '{}' has not ended", span.name));
+    for (const Span& span : current_.spans)
+        CHECK(span.end, fmt::format("span '{}' has not ended", span.name));
     waiting_.push_back(std::move(current_));
     current_ = {};
 }
@@ -102,7 +105,8 @@ FrameTimes GpuTimer::read(Frame& frame) {
         GLuint64 begin = 0, end = 0; // nanoseconds
         glGetQueryObjectui64v(span.begin.id(), GL_QUERY_RESULT, &begin);
         glGetQueryObjectui64v(span.end.id(), GL_QUERY_RESULT, &end);
-        times.spans.push_back({std::move(span.name), end > begin ? double(end - begin) * 1e-6 : 0.0});
+        times.spans.push_back(
+            {std::move(span.name), end > begin ? double(end - begin) * 1e-6 : 0.0});
         free_.push_back(std::move(span.begin));
         free_.push_back(std::move(span.end));
     }

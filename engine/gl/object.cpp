@@ -46,8 +46,8 @@ Context::State& stateForCreation() {
 } // namespace
 
 const char* objectKindName(ObjectKind kind) {
-    static constexpr const char* kNames[kObjectKindCount] = {"buffer",       "texture", "sampler", "framebuffer",
-                                                             "vertex array", "program", "query",   "fence"};
+    static constexpr const char* kNames[kObjectKindCount] = {
+        "buffer", "texture", "sampler", "framebuffer", "vertex array", "program", "query", "fence"};
     return kNames[size_t(kind)];
 }
 
@@ -71,7 +71,8 @@ std::string LiveObjects::describe() const {
     return text.empty() ? "none" : text;
 }
 
-Object::Object(ObjectKind kind, GLuint name, int64_t bytes) : kind_(kind), id_(name), bytes_(bytes) {
+Object::Object(ObjectKind kind, GLuint name, int64_t bytes)
+    : kind_(kind), id_(name), bytes_(bytes) {
     if (name == 0) return;
     Context::State& state = stateForCreation();
     context_ = state.serial;
@@ -80,8 +81,8 @@ Object::Object(ObjectKind kind, GLuint name, int64_t bytes) : kind_(kind), id_(n
 }
 
 Object::Object(Object&& other) noexcept
-    : kind_(other.kind_), id_(std::exchange(other.id_, 0)), context_(std::exchange(other.context_, 0)),
-      bytes_(std::exchange(other.bytes_, 0)) {}
+    : kind_(other.kind_), id_(std::exchange(other.id_, 0)),
+      context_(std::exchange(other.context_, 0)), bytes_(std::exchange(other.bytes_, 0)) {}
 
 Object& Object::operator=(Object&& other) noexcept {
     if (this == &other) return *this;
@@ -102,9 +103,9 @@ void Object::reset() {
         --state->live.counts[size_t(kind_)];
         state->live.bytes -= bytes_;
     } else if (contextExists(context_)) {
-        log::error(
-            fmt::format("a {} was released while its GL context was not current; it stays until the context goes",
-                        objectKindName(kind_)));
+        log::error(fmt::format(
+            "a {} was released while its GL context was not current; it stays until the context goes",
+            objectKindName(kind_)));
     }
     id_ = 0;
     context_ = 0;
@@ -115,7 +116,8 @@ void Object::label(std::string_view name) const {
     if (id_ == 0) return;
     const GLenum identifier = labelIdentifier(kind_);
     if (identifier == GL_NONE) return;
-    const auto length = std::min<size_t>(name.size(), size_t(currentCapabilities().limits.labelLength) - 1);
+    const auto length =
+        std::min<size_t>(name.size(), size_t(currentCapabilities().limits.labelLength) - 1);
     glObjectLabel(identifier, id_, GLsizei(length), name.data());
 }
 

@@ -34,7 +34,8 @@ void collectIdentifiers(std::string_view text, std::vector<uint64_t>& hashes) {
     }
 }
 
-template <typename GetLength, typename GetText> std::string driverLog(GLuint id, GetLength getLength, GetText getText) {
+template <typename GetLength, typename GetText>
+std::string driverLog(GLuint id, GetLength getLength, GetText getText) {
     GLint length = 0;
     getLength(id, GL_INFO_LOG_LENGTH, &length);
     std::string text(size_t(std::max(length, 1)), '\0');
@@ -47,21 +48,25 @@ template <typename GetLength, typename GetText> std::string driverLog(GLuint id,
 } // namespace
 
 const char* resourceKindName(ResourceKind kind) {
-    static constexpr const char* kNames[] = {"uniform block", "storage block", "sampler", "image", "uniform"};
+    static constexpr const char* kNames[] = {"uniform block", "storage block", "sampler", "image",
+                                             "uniform"};
     return kNames[size_t(kind)];
 }
 
 Result<GLenum> stageOfFile(std::string_view path) {
     static constexpr std::pair<std::string_view, GLenum> kEndings[] = {
-        {".comp", GL_COMPUTE_SHADER},  {".vert", GL_VERTEX_SHADER},       {".frag", GL_FRAGMENT_SHADER},
-        {".geom", GL_GEOMETRY_SHADER}, {".tesc", GL_TESS_CONTROL_SHADER}, {".tese", GL_TESS_EVALUATION_SHADER}};
+        {".comp", GL_COMPUTE_SHADER},      {".vert", GL_VERTEX_SHADER},
+        {".frag", GL_FRAGMENT_SHADER},     {".geom", GL_GEOMETRY_SHADER},
+        {".tesc", GL_TESS_CONTROL_SHADER}, {".tese", GL_TESS_EVALUATION_SHADER}};
     for (const auto& [ending, stage] : kEndings)
         if (path.ends_with(ending)) return stage;
-    return Error{
-        fmt::format("shader '{}' has no stage: its name must end in .comp, .vert, .frag, .geom, .tesc or .tese", path)};
+    return Error{fmt::format(
+        "shader '{}' has no stage: its name must end in .comp, .vert, .frag, .geom, .tesc or .tese",
+        path)};
 }
 
-PendingProgram::PendingProgram(std::string_view name, std::span<const StageSource> stages) : name_(name) {
+PendingProgram::PendingProgram(std::string_view name, std::span<const StageSource> stages)
+    : name_(name) {
     CHECK(!stages.empty(), fmt::format("program '{}' has no stage", name));
     for (const StageSource& stage : stages) {
         const GLuint shader = glCreateShader(stage.stage);
@@ -112,7 +117,8 @@ Result<void> PendingProgram::checkStages() const {
         glGetShaderiv(stage.shader, GL_COMPILE_STATUS, &compiled);
         if (compiled) continue;
         const std::string log = driverLog(stage.shader, glGetShaderiv, glGetShaderInfoLog);
-        return Error{fmt::format("shader '{}' does not compile:\n{}", name_, mapShaderMessages(log, stage.source))};
+        return Error{fmt::format("shader '{}' does not compile:\n{}", name_,
+                                 mapShaderMessages(log, stage.source))};
     }
     return {};
 }
@@ -131,21 +137,24 @@ Result<Program> PendingProgram::finish() {
     Program program;
     program.name_ = self.name_;
     program.resources_ = reflectAndBind(self.object_.id());
-    if (Result<void> limits = checkBindingLimits(self.name_, program.resources_); !limits) return limits.error();
+    if (Result<void> limits = checkBindingLimits(self.name_, program.resources_); !limits)
+        return limits.error();
     for (const Stage& stage : self.stages_) {
         GLint type = 0;
         glGetShaderiv(stage.shader, GL_SHADER_TYPE, &type);
         collectIdentifiers(stage.source.text, program.identifiers_);
-        const std::string remarks =
-            mapShaderMessages(driverLog(stage.shader, glGetShaderiv, glGetShaderInfoLog), stage.source);
-        if (!remarks.empty()) program.warnings_ += (program.warnings_.empty() ? "" : "\n") + remarks;
+        const std::string remarks = mapShaderMessages(
+            driverLog(stage.shader, glGetShaderiv, glGetShaderInfoLog), stage.source);
+        if (!remarks.empty())
+            program.warnings_ += (program.warnings_.empty() ? "" : "\n") + remarks;
         if (GLenum(type) != GL_COMPUTE_SHADER) continue;
         GLint size[3] = {};
         glGetProgramiv(self.object_.id(), GL_COMPUTE_WORK_GROUP_SIZE, size);
         program.localSize_ = uvec3(size[0], size[1], size[2]);
     }
     std::ranges::sort(program.identifiers_);
-    program.identifiers_.erase(std::ranges::unique(program.identifiers_).begin(), program.identifiers_.end());
+    program.identifiers_.erase(std::ranges::unique(program.identifiers_).begin(),
+                               program.identifiers_.end());
     self.deleteShaders();
     program.object_ = std::move(self.object_);
     program.object_.label(program.name_);
@@ -167,13 +176,16 @@ bool Program::mentions(std::string_view identifier) const {
 }
 
 void Program::set(std::string_view uniform, int32_t value) const {
-    if (const ProgramResource* found = find(uniform)) glProgramUniform1i(id(), found->location, value);
+    if (const ProgramResource* found = find(uniform))
+        glProgramUniform1i(id(), found->location, value);
 }
 void Program::set(std::string_view uniform, uint32_t value) const {
-    if (const ProgramResource* found = find(uniform)) glProgramUniform1ui(id(), found->location, value);
+    if (const ProgramResource* found = find(uniform))
+        glProgramUniform1ui(id(), found->location, value);
 }
 void Program::set(std::string_view uniform, float value) const {
-    if (const ProgramResource* found = find(uniform)) glProgramUniform1f(id(), found->location, value);
+    if (const ProgramResource* found = find(uniform))
+        glProgramUniform1f(id(), found->location, value);
 }
 
 } // namespace tyndall::gl

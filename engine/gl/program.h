@@ -28,11 +28,12 @@ const char* resourceKindName(ResourceKind kind);
 struct BlockMember {
     std::string name; // as GL names it: "view.size", "lights[0].position"
     GLenum type = 0;
-    int offset = 0;         // bytes
-    int arraySize = 1;      // 0: unbounded
-    int arrayStride = 0;    // bytes
-    int matrixStride = 0;   // bytes
-    int topLevelStride = 0; // bytes between elements of the block's outer array; storage blocks only
+    int offset = 0;       // bytes
+    int arraySize = 1;    // 0: unbounded
+    int arrayStride = 0;  // bytes
+    int matrixStride = 0; // bytes
+    int topLevelStride =
+        0; // bytes between elements of the block's outer array; storage blocks only
 };
 
 /// Something that a program reads or writes.

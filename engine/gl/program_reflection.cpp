@@ -15,7 +15,8 @@ std::string resourceName(GLuint program, GLenum interface, GLuint index) {
     glGetProgramResourceiv(program, interface, index, 1, &property, 1, nullptr, &length);
     std::string name(size_t(std::max(length, 1)), '\0');
     GLsizei written = 0;
-    glGetProgramResourceName(program, interface, index, GLsizei(name.size()), &written, name.data());
+    glGetProgramResourceName(program, interface, index, GLsizei(name.size()), &written,
+                             name.data());
     name.resize(size_t(written));
     return name;
 }
@@ -68,7 +69,9 @@ bool isSamplerType(GLenum type) {
 
 /// Image types are one run of numbers in the specification, from GL_IMAGE_1D to
 /// GL_UNSIGNED_INT_IMAGE_2D_MULTISAMPLE_ARRAY.
-bool isImageType(GLenum type) { return type >= GL_IMAGE_1D && type <= GL_UNSIGNED_INT_IMAGE_2D_MULTISAMPLE_ARRAY; }
+bool isImageType(GLenum type) {
+    return type >= GL_IMAGE_1D && type <= GL_UNSIGNED_INT_IMAGE_2D_MULTISAMPLE_ARRAY;
+}
 
 std::vector<BlockMember> blockMembers(GLuint program, GLenum block, GLuint index) {
     const bool storage = block == GL_SHADER_STORAGE_BLOCK;
@@ -76,7 +79,8 @@ std::vector<BlockMember> blockMembers(GLuint program, GLenum block, GLuint index
     std::vector<GLint> variables(size_t(property(program, block, index, GL_NUM_ACTIVE_VARIABLES)));
     const GLenum active = GL_ACTIVE_VARIABLES;
     if (!variables.empty())
-        glGetProgramResourceiv(program, block, index, 1, &active, GLsizei(variables.size()), nullptr, variables.data());
+        glGetProgramResourceiv(program, block, index, 1, &active, GLsizei(variables.size()),
+                               nullptr, variables.data());
     std::vector<BlockMember> members;
     for (GLint variable : variables) {
         BlockMember member;
@@ -87,14 +91,16 @@ std::vector<BlockMember> blockMembers(GLuint program, GLenum block, GLuint index
         member.arraySize = property(program, interface, at, GL_ARRAY_SIZE);
         member.arrayStride = property(program, interface, at, GL_ARRAY_STRIDE);
         member.matrixStride = property(program, interface, at, GL_MATRIX_STRIDE);
-        if (storage) member.topLevelStride = property(program, interface, at, GL_TOP_LEVEL_ARRAY_STRIDE);
+        if (storage)
+            member.topLevelStride = property(program, interface, at, GL_TOP_LEVEL_ARRAY_STRIDE);
         members.push_back(std::move(member));
     }
     std::ranges::sort(members, {}, &BlockMember::offset);
     return members;
 }
 
-void reflectBlocks(GLuint program, GLenum interface, ResourceKind kind, std::vector<ProgramResource>& resources) {
+void reflectBlocks(GLuint program, GLenum interface, ResourceKind kind,
+                   std::vector<ProgramResource>& resources) {
     for (GLuint i = 0; i < GLuint(activeCount(program, interface)); ++i) {
         ProgramResource resource;
         resource.kind = kind;
@@ -151,17 +157,18 @@ std::vector<ProgramResource> reflectAndBind(GLuint program) {
 
 Result<void> checkBindingLimits(std::string_view name, std::span<const ProgramResource> resources) {
     const Limits& limits = currentCapabilities().limits;
-    const std::pair<ResourceKind, int> most[] = {{ResourceKind::UniformBlock, limits.uniformBufferBindings},
-                                                 {ResourceKind::StorageBlock, limits.storageBufferBindings},
-                                                 {ResourceKind::Sampler, limits.combinedTextureUnits},
-                                                 {ResourceKind::Image, limits.imageUnits}};
+    const std::pair<ResourceKind, int> most[] = {
+        {ResourceKind::UniformBlock, limits.uniformBufferBindings},
+        {ResourceKind::StorageBlock, limits.storageBufferBindings},
+        {ResourceKind::Sampler, limits.combinedTextureUnits},
+        {ResourceKind::Image, limits.imageUnits}};
     for (const auto& [kind, limit] : most) {
         int used = 0;
         for (const ProgramResource& resource : resources)
             if (resource.kind == kind) used += resource.count;
         if (used > limit)
-            return Error{fmt::format("shader '{}' uses {} {} bindings, and this GPU has {}", name, used,
-                                     resourceKindName(kind), limit)};
+            return Error{fmt::format("shader '{}' uses {} {} bindings, and this GPU has {}", name,
+                                     used, resourceKindName(kind), limit)};
     }
     return {};
 }

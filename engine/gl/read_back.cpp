@@ -13,10 +13,12 @@ ReadBack ReadBack::start(const Texture& texture, int mip) {
     ReadBack result;
     result.region_ = texture.mipRegion(mip);
     result.channels_ = int(info.channels);
-    result.integer_ = info.formatClass == FormatClass::UnsignedInt || info.formatClass == FormatClass::SignedInt;
+    result.integer_ =
+        info.formatClass == FormatClass::UnsignedInt || info.formatClass == FormatClass::SignedInt;
     const uint64_t bytes = uint64_t(result.region_.width) * uint64_t(result.region_.height) *
                            uint64_t(result.region_.depth) * info.channels * sizeof(float);
-    CHECK(bytes < (uint64_t(1) << 31), fmt::format("a read-back of {} bytes is more than OpenGL packs at once", bytes));
+    CHECK(bytes < (uint64_t(1) << 31),
+          fmt::format("a read-back of {} bytes is more than OpenGL packs at once", bytes));
 
     GLuint id = 0;
     glCreateBuffers(1, &id);
@@ -61,20 +63,24 @@ std::vector<uint32_t> ReadBack::takeIntegers() {
     return values;
 }
 
-std::vector<float> readFloats(const Texture& texture, int mip) { return ReadBack::start(texture, mip).takeFloats(); }
+std::vector<float> readFloats(const Texture& texture, int mip) {
+    return ReadBack::start(texture, mip).takeFloats();
+}
 std::vector<uint32_t> readIntegers(const Texture& texture, int mip) {
     return ReadBack::start(texture, mip).takeIntegers();
 }
 
 Image takeImage(ReadBack& readBack, int layer) {
     const TextureRegion region = readBack.region();
-    CHECK(layer >= 0 && layer < region.depth, fmt::format("layer {} of a texture with {}", layer, region.depth));
+    CHECK(layer >= 0 && layer < region.depth,
+          fmt::format("layer {} of a texture with {}", layer, region.depth));
     Image image(region.width, region.height, readBack.channels());
     const std::vector<float> values = readBack.takeFloats();
     const size_t row = size_t(image.width) * size_t(image.channels);
     const float* source = values.data() + size_t(layer) * size_t(image.height) * row;
     for (int y = 0; y < image.height; ++y)
-        std::memcpy(image.at(0, image.height - 1 - y), source + size_t(y) * row, row * sizeof(float));
+        std::memcpy(image.at(0, image.height - 1 - y), source + size_t(y) * row,
+                    row * sizeof(float));
     return image;
 }
 

@@ -39,7 +39,8 @@ GLuint SamplerCache::get(const SamplerSpec& spec) {
         glSamplerParameteri(id, GL_TEXTURE_COMPARE_FUNC, GLint(spec.compare));
     }
     const Capabilities& capabilities = currentCapabilities();
-    if (spec.anisotropy > 1.0f && capabilities.has("GL_EXT_texture_filter_anisotropic") && !capabilities.needs(Workaround::NoAnisotropy))
+    if (spec.anisotropy > 1.0f && capabilities.has("GL_EXT_texture_filter_anisotropic") &&
+        !capabilities.needs(Workaround::NoAnisotropy))
         glSamplerParameterf(id, GL_TEXTURE_MAX_ANISOTROPY_EXT,
                             std::min(spec.anisotropy, capabilities.limits.anisotropy));
     return id;

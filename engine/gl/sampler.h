@@ -14,13 +14,14 @@ struct SamplerSpec {
     GLenum minFilter = GL_LINEAR_MIPMAP_LINEAR;
     GLenum magFilter = GL_LINEAR;
     GLenum wrapS = GL_REPEAT, wrapT = GL_REPEAT, wrapR = GL_CLAMP_TO_EDGE;
-    float anisotropy = 1.0f;        // 1: none; more is clamped to what the driver has, and ignored where it has none
-    GLenum compare = GL_NONE;       // GL_NONE, or the function of a depth comparison (GL_GEQUAL …)
+    float anisotropy =
+        1.0f; // 1: none; more is clamped to what the driver has, and ignored where it has none
+    GLenum compare = GL_NONE; // GL_NONE, or the function of a depth comparison (GL_GEQUAL …)
     float border[4] = {0, 0, 0, 0}; // for GL_CLAMP_TO_BORDER
 
     [[nodiscard]] auto key() const {
-        return std::tuple(minFilter, magFilter, wrapS, wrapT, wrapR, anisotropy, compare, border[0], border[1],
-                          border[2], border[3]);
+        return std::tuple(minFilter, magFilter, wrapS, wrapT, wrapR, anisotropy, compare, border[0],
+                          border[1], border[2], border[3]);
     }
 };
 

@@ -12,7 +12,8 @@ void copyPicture(GLuint source, int width, int height, Texture& copy) {
         copy = Texture("editor.picture", spec);
         copy.swizzle(GL_RED, GL_GREEN, GL_BLUE, GL_ONE);
     }
-    glCopyImageSubData(source, GL_TEXTURE_2D, 0, 0, 0, 0, copy.id(), GL_TEXTURE_2D, 0, 0, 0, 0, width, height, 1);
+    glCopyImageSubData(source, GL_TEXTURE_2D, 0, 0, 0, 0, copy.id(), GL_TEXTURE_2D, 0, 0, 0, 0,
+                       width, height, 1);
 }
 
 void beginWindowFrame(int width, int height, float red, float green, float blue) {

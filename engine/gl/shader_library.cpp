@@ -49,12 +49,14 @@ fs::path folderFromEnvironment() {
 /// Where sources come from: the folder, then what was added, then what is embedded.
 class Sources {
 public:
-    Sources(std::span<const EmbeddedShader> embedded, fs::path folder) : folder_(std::move(folder)) {
+    Sources(std::span<const EmbeddedShader> embedded, fs::path folder)
+        : folder_(std::move(folder)) {
         for (const EmbeddedShader& shader : embedded) embedded_[shader.path] = shader.text;
         if (!folder_.empty() && !isFolder(folder_))
             log::warningOnce(
                 "shader folder " + folder_.string(),
-                fmt::format("the shader folder '{}' does not exist: the built-in shaders are used", folder_.string()));
+                fmt::format("the shader folder '{}' does not exist: the built-in shaders are used",
+                            folder_.string()));
     }
 
     [[nodiscard]] std::optional<std::string> read(const std::string& path) const {
@@ -62,7 +64,8 @@ public:
         if (!folder_.empty())
             if (std::optional<std::string> text = readWholeFile(folder_ / path)) return text;
         if (const auto found = added_.find(path); found != added_.end()) return found->second.text;
-        if (const auto found = embedded_.find(path); found != embedded_.end()) return std::string(found->second);
+        if (const auto found = embedded_.find(path); found != embedded_.end())
+            return std::string(found->second);
         return std::nullopt;
     }
 
@@ -73,7 +76,8 @@ public:
             const auto size = error ? uintmax_t(0) : fs::file_size(folder_ / path, error);
             if (!error) return {time.time_since_epoch().count(), int64_t(size)};
         }
-        if (const auto found = added_.find(path); found != added_.end()) return {found->second.count, 0};
+        if (const auto found = added_.find(path); found != added_.end())
+            return {found->second.count, 0};
         return {0, embedded_.contains(path) ? 0 : -1};
     }
 
@@ -113,7 +117,8 @@ struct ShaderLibrary::State {
     mutable std::optional<VariantList> variants;
     uint64_t generation = 0;
 
-    State(std::span<const EmbeddedShader> embedded, fs::path folder, std::chrono::milliseconds interval)
+    State(std::span<const EmbeddedShader> embedded, fs::path folder,
+          std::chrono::milliseconds interval)
         : sources(embedded, std::move(folder)), pollInterval(interval) {}
 
     /// Expands every stage, and notes files and times before they are read: a change in between is then seen as one.
@@ -131,7 +136,8 @@ struct ShaderLibrary::State {
         return result;
     }
 
-    static Result<std::vector<StageSource>> expandStages(const ProgramRequest& request, const ReadShader& read) {
+    static Result<std::vector<StageSource>> expandStages(const ProgramRequest& request,
+                                                         const ReadShader& read) {
         std::vector<StageSource> stages;
         for (const std::string& file : request.files) {
             const Result<GLenum> stage = stageOfFile(file);
@@ -162,7 +168,8 @@ struct ShaderLibrary::State {
         }
         entry.program = std::move(*built);
         if (!entry.program.warnings().empty())
-            log::debug(fmt::format("shader '{}':\n{}", entry.program.name(), entry.program.warnings()));
+            log::debug(
+                fmt::format("shader '{}':\n{}", entry.program.name(), entry.program.warnings()));
         return true;
     }
 
@@ -193,20 +200,24 @@ struct ShaderLibrary::State {
             log::info(fmt::format("shader '{}' was made anew", name));
             return true;
         }
-        log::warning(entry.program ? fmt::format("{}\nthe last good program stays", entry.failure) : entry.failure);
+        log::warning(entry.program ? fmt::format("{}\nthe last good program stays", entry.failure)
+                                   : entry.failure);
         return false;
     }
 };
 
 ShaderLibrary::ShaderLibrary(ShaderLibraryOptions options)
     : state_(std::make_unique<State>(options.embedded,
-                                     options.folder.empty() ? folderFromEnvironment() : std::move(options.folder),
+                                     options.folder.empty() ? folderFromEnvironment()
+                                                            : std::move(options.folder),
                                      options.pollInterval)) {}
 ShaderLibrary::~ShaderLibrary() = default;
 ShaderLibrary::ShaderLibrary(ShaderLibrary&&) noexcept = default;
 ShaderLibrary& ShaderLibrary::operator=(ShaderLibrary&&) noexcept = default;
 
-void ShaderLibrary::addSource(const std::string& path, std::string text) { state_->sources.add(path, std::move(text)); }
+void ShaderLibrary::addSource(const std::string& path, std::string text) {
+    state_->sources.add(path, std::move(text));
+}
 
 Result<const Program*> ShaderLibrary::program(const ProgramRequest& request) {
     State::Entry& entry = state_->find(request);
@@ -215,7 +226,8 @@ Result<const Program*> ShaderLibrary::program(const ProgramRequest& request) {
     return static_cast<const Program*>(&entry.program);
 }
 
-Result<const Program*> ShaderLibrary::compute(const std::string& path, std::vector<ShaderDefine> defines) {
+Result<const Program*> ShaderLibrary::compute(const std::string& path,
+                                              std::vector<ShaderDefine> defines) {
     return program({{path}, std::move(defines)});
 }
 

@@ -28,7 +28,9 @@ Directive parseDirective(std::string_view line) {
     return {line.substr(0, end), trimmed(line.substr(end))};
 }
 
-std::string_view firstWord(std::string_view text) { return text.substr(0, text.find_first_of(" \t/")); }
+std::string_view firstWord(std::string_view text) {
+    return text.substr(0, text.find_first_of(" \t/"));
+}
 
 /// Does `line` end inside a /* comment that began inside it or before?
 bool endsInComment(std::string_view line, bool inside) {
@@ -74,7 +76,8 @@ public:
     Result<void> addFile(const std::string& path, const std::string& from) {
         if (std::ranges::find(stack_, path) != stack_.end()) {
             std::string chain;
-            for (auto it = std::ranges::find(stack_, path); it != stack_.end(); ++it) chain += *it + " -> ";
+            for (auto it = std::ranges::find(stack_, path); it != stack_.end(); ++it)
+                chain += *it + " -> ";
             return Error{fmt::format("{}: includes go round in a circle: {}{}", from, chain, path)};
         }
         const size_t number = numberOf(path);
@@ -90,7 +93,8 @@ public:
         for (size_t i = 0; i < lines.size(); ++i) {
             const Directive directive = inComment ? Directive{} : parseDirective(lines[i]);
             inComment = endsInComment(lines[i], inComment);
-            if (Result<void> added = addLine(lines, i, directive, branches, number, path); !added) return added;
+            if (Result<void> added = addLine(lines, i, directive, branches, number, path); !added)
+                return added;
         }
         stack_.pop_back();
         return {};
@@ -118,8 +122,10 @@ private:
         if (directive.name == "ifdef") {
             branches.push_back(word == "__cplusplus" ? Branch::Cpp : Branch::Unknown);
         } else if (directive.name == "ifndef") {
-            const Directive next = following.empty() ? Directive{} : parseDirective(following.front());
-            const bool guard = word == "__cplusplus" || (next.name == "define" && firstWord(next.rest) == word);
+            const Directive next =
+                following.empty() ? Directive{} : parseDirective(following.front());
+            const bool guard =
+                word == "__cplusplus" || (next.name == "define" && firstWord(next.rest) == word);
             branches.push_back(guard ? Branch::Certain : Branch::Unknown);
         } else if (directive.name == "if") {
             branches.push_back(Branch::Unknown);
@@ -132,8 +138,9 @@ private:
         }
     }
 
-    Result<void> addLine(std::span<const std::string_view> lines, size_t i, const Directive& directive,
-                         std::vector<Branch>& branches, size_t number, const std::string& path) {
+    Result<void> addLine(std::span<const std::string_view> lines, size_t i,
+                         const Directive& directive, std::vector<Branch>& branches, size_t number,
+                         const std::string& path) {
         const bool wasCpp = std::ranges::find(branches, Branch::Cpp) != branches.end();
         follow(directive, lines.subspan(i + 1), branches);
         const bool isCpp = std::ranges::find(branches, Branch::Cpp) != branches.end();
@@ -148,13 +155,18 @@ private:
             return {};
         }
         const std::string place = fmt::format("{}:{}", path, i + 1);
-        const size_t close = directive.rest.size() < 2 ? std::string_view::npos : directive.rest.find('"', 1);
-        if (directive.rest.empty() || directive.rest.front() != '"' || close == std::string_view::npos)
-            return Error{
-                fmt::format("{}: '{}' is no include: write #include \"folder/file.glsl\", relative to shaders/", place,
-                            trimmed(lines[i]))};
-        const bool certain = std::ranges::find(branches, Branch::Unknown) == branches.end() && uncertainIncludes_ == 0;
-        if (Result<void> added = include(std::string(directive.rest.substr(1, close - 1)), place, certain); !added)
+        const size_t close =
+            directive.rest.size() < 2 ? std::string_view::npos : directive.rest.find('"', 1);
+        if (directive.rest.empty() || directive.rest.front() != '"' ||
+            close == std::string_view::npos)
+            return Error{fmt::format(
+                "{}: '{}' is no include: write #include \"folder/file.glsl\", relative to shaders/",
+                place, trimmed(lines[i]))};
+        const bool certain = std::ranges::find(branches, Branch::Unknown) == branches.end() &&
+                             uncertainIncludes_ == 0;
+        if (Result<void> added =
+                include(std::string(directive.rest.substr(1, close - 1)), place, certain);
+            !added)
             return added;
         addLineDirective(number, i + 2);
         return {};
@@ -203,8 +215,9 @@ std::string mapShaderMessages(std::string_view driverLog, const ExpandedShader& 
         size_t line = 0;
         std::from_chars(number.data(), number.data() + number.size(), line);
         const size_t file = line / kLinesPerFile;
-        return file < shader.files.size() ? fmt::format("{}:{}", shader.files[file], line % kLinesPerFile)
-                                          : "line " + number;
+        return file < shader.files.size()
+                   ? fmt::format("{}:{}", shader.files[file], line % kLinesPerFile)
+                   : "line " + number;
     };
     std::string mapped;
     for (std::string_view view : splitLines(driverLog)) {

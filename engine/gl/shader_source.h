@@ -32,7 +32,8 @@ inline constexpr int kLinesPerFile = 100000;
 /// One shader, ready for the driver.
 struct ExpandedShader {
     std::string text;
-    std::vector<std::string> files; // 0: the shader itself, then its includes in the order in which they were met
+    std::vector<std::string>
+        files; // 0: the shader itself, then its includes in the order in which they were met
 };
 
 /// Puts `#version 450 core` and the defines before the shader `path` and its includes in their places. An included file

@@ -48,17 +48,21 @@ Result<VariantLine> parseLine(std::string_view text, int number) {
         if (word.find('=') == std::string_view::npos) {
             if (Result<GLenum> stage = stageOfFile(word); !stage) return stage.error();
             if (!line.defines.empty())
-                return Error{fmt::format("'{}' stands after the defines: shaders come first", word)};
+                return Error{
+                    fmt::format("'{}' stands after the defines: shaders come first", word)};
             line.files.emplace_back(word);
             continue;
         }
         Result<VariantLine::Define> define = parseDefine(word);
         if (!define) return define.error();
-        if (std::ranges::find(line.defines, define->name, &VariantLine::Define::name) != line.defines.end())
-            return Error{fmt::format("'{}' is there twice: write its values once, separated by commas", define->name)};
+        if (std::ranges::find(line.defines, define->name, &VariantLine::Define::name) !=
+            line.defines.end())
+            return Error{fmt::format(
+                "'{}' is there twice: write its values once, separated by commas", define->name)};
         line.defines.push_back(std::move(*define));
     }
-    if (line.files.empty() && !line.defines.empty()) return Error{"there is no shader before the defines"};
+    if (line.files.empty() && !line.defines.empty())
+        return Error{"there is no shader before the defines"};
     return line;
 }
 
@@ -66,7 +70,8 @@ bool matches(const VariantLine& line, const ProgramRequest& request) {
     if (line.files != request.files || line.defines.size() != request.defines.size()) return false;
     return std::ranges::all_of(request.defines, [&](const ShaderDefine& define) {
         const auto found = std::ranges::find(line.defines, define.name, &VariantLine::Define::name);
-        return found != line.defines.end() && std::ranges::find(found->values, define.value) != found->values.end();
+        return found != line.defines.end() &&
+               std::ranges::find(found->values, define.value) != found->values.end();
     });
 }
 
@@ -77,7 +82,8 @@ std::string ProgramRequest::describe() const {
     std::ranges::sort(sorted, {}, &ShaderDefine::name);
     std::string text;
     for (const std::string& file : files) text += (text.empty() ? "" : " ") + file;
-    for (const ShaderDefine& define : sorted) text += fmt::format(" {}={}", define.name, define.value);
+    for (const ShaderDefine& define : sorted)
+        text += fmt::format(" {}={}", define.name, define.value);
     return text;
 }
 
@@ -94,7 +100,8 @@ Result<VariantList> VariantList::parse(std::string_view text, std::string_view n
 }
 
 bool VariantList::contains(const ProgramRequest& request) const {
-    return std::ranges::any_of(lines_, [&](const VariantLine& line) { return matches(line, request); });
+    return std::ranges::any_of(lines_,
+                               [&](const VariantLine& line) { return matches(line, request); });
 }
 
 void VariantList::forEachVariant(const std::function<void(const ProgramRequest&)>& visit) const {
@@ -103,10 +110,12 @@ void VariantList::forEachVariant(const std::function<void(const ProgramRequest&)
         while (true) {
             ProgramRequest request{line.files, {}};
             for (size_t i = 0; i < choice.size(); ++i)
-                request.defines.push_back({line.defines[i].name, line.defines[i].values[choice[i]]});
+                request.defines.push_back(
+                    {line.defines[i].name, line.defines[i].values[choice[i]]});
             visit(request);
             size_t digit = 0;
-            while (digit < choice.size() && ++choice[digit] == line.defines[digit].values.size()) choice[digit++] = 0;
+            while (digit < choice.size() && ++choice[digit] == line.defines[digit].values.size())
+                choice[digit++] = 0;
             if (digit == choice.size()) break;
         }
     }

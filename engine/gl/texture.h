@@ -14,7 +14,8 @@ namespace tyndall::gl {
 
 /// Shape and format of a texture's storage.
 struct TextureSpec {
-    GLenum target = GL_TEXTURE_2D;      // GL_TEXTURE_2D, GL_TEXTURE_2D_ARRAY, GL_TEXTURE_3D, GL_TEXTURE_CUBE_MAP
+    GLenum target =
+        GL_TEXTURE_2D; // GL_TEXTURE_2D, GL_TEXTURE_2D_ARRAY, GL_TEXTURE_3D, GL_TEXTURE_CUBE_MAP
     GLenum internalFormat = GL_RGBA32F; // a format of format.cpp
     int width = 1, height = 1;
     int depth = 1; // slices of a 3D texture, layers of an array; 1 for 2D, 6 for cube maps
@@ -46,8 +47,8 @@ public:
     /// The same texels seen as `spec.target` with `spec.internalFormat` (of the same size of texel) and `spec.mips`
     /// from `firstMip`, `spec.depth` layers from `firstLayer`. The storage lives until texture and views are gone. Its
     /// width and height are those of `firstMip`.
-    [[nodiscard]] Texture view(std::string_view name, GLenum target, GLenum internalFormat, int firstMip, int mips,
-                               int firstLayer, int layers) const;
+    [[nodiscard]] Texture view(std::string_view name, GLenum target, GLenum internalFormat,
+                               int firstMip, int mips, int firstLayer, int layers) const;
 
     [[nodiscard]] GLuint id() const { return object_.id(); }
     [[nodiscard]] const TextureSpec& spec() const { return spec_; }
@@ -62,7 +63,8 @@ public:
     /// Copies tightly packed texels into `region`, in `format` and `type` of glTexSubImage (0: the format's own, see
     /// format.h). `bytes` is the size of the data; CHECKs that the region lies inside and the size is right for the
     /// format's own types.
-    void write(const TextureRegion& region, const void* data, size_t bytes, GLenum format = 0, GLenum type = 0);
+    void write(const TextureRegion& region, const void* data, size_t bytes, GLenum format = 0,
+               GLenum type = 0);
     /// All texels of mip 0, tightly packed in the format's own type.
     void write(const void* data, size_t bytes) { write(mipRegion(0), data, bytes); }
     /// Every texel of every mip becomes this colour (or depth: x). For float, normalised and depth formats.

@@ -2,7 +2,8 @@
 
 namespace tyndall::gl {
 
-VertexArray::VertexArray(std::string_view name, std::span<const VertexAttribute> attributes, GLuint indices) {
+VertexArray::VertexArray(std::string_view name, std::span<const VertexAttribute> attributes,
+                         GLuint indices) {
     GLuint id = 0;
     glCreateVertexArrays(1, &id);
     object_ = Object(ObjectKind::VertexArray, id);
@@ -10,9 +11,11 @@ VertexArray::VertexArray(std::string_view name, std::span<const VertexAttribute>
     GLuint binding = 0;
     for (const VertexAttribute& attribute : attributes) {
         glEnableVertexArrayAttrib(id, attribute.location);
-        glVertexArrayVertexBuffer(id, binding, attribute.buffer, GLintptr(attribute.offset), attribute.stride);
+        glVertexArrayVertexBuffer(id, binding, attribute.buffer, GLintptr(attribute.offset),
+                                  attribute.stride);
         if (attribute.integer)
-            glVertexArrayAttribIFormat(id, attribute.location, attribute.components, attribute.type, 0);
+            glVertexArrayAttribIFormat(id, attribute.location, attribute.components, attribute.type,
+                                       0);
         else
             glVertexArrayAttribFormat(id, attribute.location, attribute.components, attribute.type,
                                       attribute.normalised, 0);

@@ -26,7 +26,8 @@ class VertexArray {
 public:
     VertexArray() = default;
     /// `indices`: GL name of the buffer of indices, 0 for none.
-    VertexArray(std::string_view name, std::span<const VertexAttribute> attributes, GLuint indices = 0);
+    VertexArray(std::string_view name, std::span<const VertexAttribute> attributes,
+                GLuint indices = 0);
 
     [[nodiscard]] GLuint id() const { return object_.id(); }
     explicit operator bool() const { return bool(object_); }

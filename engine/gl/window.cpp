@@ -45,7 +45,8 @@ public:
     [[nodiscard]] Result<void> makeCurrent() override {
         glfwMakeContextCurrent(window_);
         if (glfwGetCurrentContext() == window_) return {};
-        return Error{fmt::format("glfw: the window's context cannot be made current: {}", lastGlfwError())};
+        return Error{
+            fmt::format("glfw: the window's context cannot be made current: {}", lastGlfwError())};
     }
     void releaseCurrent() override { glfwMakeContextCurrent(nullptr); }
     [[nodiscard]] void* getProcAddress(const char* function) override {
@@ -64,11 +65,14 @@ GLFWwindow* openWindow(const WindowOptions& options) {
     glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 5);
     glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
     glfwWindowHint(GLFW_OPENGL_FORWARD_COMPAT, GLFW_TRUE);
-    glfwWindowHint(GLFW_OPENGL_DEBUG_CONTEXT, options.context.debug == DebugMode::Off ? GLFW_FALSE : GLFW_TRUE);
-    glfwWindowHint(GLFW_VISIBLE, options.visibility == WindowVisibility::Hidden ? GLFW_FALSE : GLFW_TRUE);
+    glfwWindowHint(GLFW_OPENGL_DEBUG_CONTEXT,
+                   options.context.debug == DebugMode::Off ? GLFW_FALSE : GLFW_TRUE);
+    glfwWindowHint(GLFW_VISIBLE,
+                   options.visibility == WindowVisibility::Hidden ? GLFW_FALSE : GLFW_TRUE);
     glfwWindowHint(GLFW_DEPTH_BITS, 0); // the frame is drawn elsewhere and copied here
     glfwWindowHint(GLFW_STENCIL_BITS, 0);
-    return glfwCreateWindow(options.size.x, options.size.y, options.title.c_str(), nullptr, nullptr);
+    return glfwCreateWindow(options.size.x, options.size.y, options.title.c_str(), nullptr,
+                            nullptr);
 }
 
 } // namespace
@@ -78,9 +82,10 @@ Result<Window> Window::create(const WindowOptions& options) {
     if (!library) return library.error();
     GLFWwindow* handle = openWindow(options);
     if (handle == nullptr)
-        return Error{fmt::format("no window with an OpenGL 4.5 core context can be opened: {}", lastGlfwError())};
-    Result<Context> context =
-        Context::adopt(std::make_unique<GlfwPlatform>(std::move(*library), handle), options.context);
+        return Error{fmt::format("no window with an OpenGL 4.5 core context can be opened: {}",
+                                 lastGlfwError())};
+    Result<Context> context = Context::adopt(
+        std::make_unique<GlfwPlatform>(std::move(*library), handle), options.context);
     if (!context) return context.error();
     glfwSwapInterval(int(options.swapInterval));
     Window window;

@@ -14,7 +14,10 @@ struct GLFWwindow;
 namespace tyndall::gl {
 
 enum class WindowVisibility : int32_t { Shown = 0, Hidden = 1 };
-enum class SwapInterval : int32_t { Immediate = 0, Display = 1 }; // Display: a frame waits for the screen
+enum class SwapInterval : int32_t {
+    Immediate = 0,
+    Display = 1
+}; // Display: a frame waits for the screen
 
 struct WindowOptions {
     std::string title = "Tyndall";

@@ -9,8 +9,8 @@ namespace tyndall {
 
 namespace {
 
-constexpr double kPlanck = 6.62607015e-34; // J s
-constexpr double kLight = 299792458.0;     // m/s
+constexpr double kPlanck = 6.62607015e-34;  // J s
+constexpr double kLight = 299792458.0;      // m/s
 constexpr double kBoltzmann = 1.380649e-23; // J/K
 constexpr double kLumensPerWatt = 683.0;
 
@@ -22,7 +22,8 @@ double lobe(double nanometres, double centre, double inverseBelow, double invers
 
 /// Wyman et al. 2013, section 2.2.
 dvec3 colourMatching(double nm) {
-    return {0.362 * lobe(nm, 442.0, 0.0624, 0.0374) + 1.056 * lobe(nm, 599.8, 0.0264, 0.0323) - 0.065 * lobe(nm, 501.1, 0.0490, 0.0382),
+    return {0.362 * lobe(nm, 442.0, 0.0624, 0.0374) + 1.056 * lobe(nm, 599.8, 0.0264, 0.0323) -
+                0.065 * lobe(nm, 501.1, 0.0490, 0.0382),
             0.821 * lobe(nm, 568.8, 0.0213, 0.0247) + 0.286 * lobe(nm, 530.9, 0.0613, 0.0322),
             1.217 * lobe(nm, 437.0, 0.0845, 0.0278) + 0.681 * lobe(nm, 459.0, 0.0385, 0.0725)};
 }
@@ -36,7 +37,8 @@ double planck(double nm, double kelvin) {
 
 /// IEC 61966-2-1, linear part, D65.
 dvec3 srgbFromXyz(const dvec3& c) {
-    return {3.2404542 * c.x - 1.5371385 * c.y - 0.4985314 * c.z, -0.9692660 * c.x + 1.8760108 * c.y + 0.0415560 * c.z,
+    return {3.2404542 * c.x - 1.5371385 * c.y - 0.4985314 * c.z,
+            -0.9692660 * c.x + 1.8760108 * c.y + 0.0415560 * c.z,
             0.0556434 * c.x - 0.2040259 * c.y + 1.0572252 * c.z};
 }
 
@@ -45,7 +47,8 @@ dvec3 srgbFromXyz(const dvec3& c) {
 dvec3 blackbodyXyz(double kelvin) {
     if (!(kelvin > 0)) return dvec3(0);
     dvec3 sum(0);
-    for (int nm = 360; nm <= 830; ++nm) sum += colourMatching(nm) * planck(nm, kelvin); // the ends contribute nothing: trapezoid
+    for (int nm = 360; nm <= 830; ++nm)
+        sum += colourMatching(nm) * planck(nm, kelvin); // the ends contribute nothing: trapezoid
     return kLumensPerWatt * sum;
 }
 
@@ -53,7 +56,9 @@ dvec3 blackbodyRadiance(double kelvin) {
     const dvec3 xyz = blackbodyXyz(kelvin);
     dvec3 rgb = srgbFromXyz(xyz);
     const double lowest = std::min({rgb.x, rgb.y, rgb.z});
-    if (lowest < 0) rgb = glm::max(dvec3(xyz.y) + (rgb - xyz.y) * (xyz.y / (xyz.y - lowest)), dvec3(0)); // max: rounding
+    if (lowest < 0)
+        rgb = glm::max(dvec3(xyz.y) + (rgb - xyz.y) * (xyz.y / (xyz.y - lowest)),
+                       dvec3(0)); // max: rounding
     return rgb;
 }
 
@@ -66,7 +71,8 @@ dvec3 BlackbodyTable::radiance(double kelvin) const {
     if (!(kelvin >= kCoolest)) return dvec3(0);
     const double where = position(kelvin);
     const size_t below = std::min(size_t(where), entries.size() - 2);
-    const dvec4 entry = glm::mix(dvec4(entries[below]), dvec4(entries[below + 1]), where - double(below));
+    const dvec4 entry =
+        glm::mix(dvec4(entries[below]), dvec4(entries[below + 1]), where - double(below));
     return dvec3(entry) * std::exp2(entry.w);
 }
 
@@ -74,7 +80,8 @@ BlackbodyTable makeBlackbodyTable(int entries) {
     CHECK(entries >= 2, "a table to interpolate in has at least two entries");
     BlackbodyTable table;
     for (int i = 0; i < entries; ++i) {
-        const double inverse = glm::mix(1 / BlackbodyTable::kCoolest, 1 / BlackbodyTable::kHottest, double(i) / (entries - 1));
+        const double inverse = glm::mix(1 / BlackbodyTable::kCoolest, 1 / BlackbodyTable::kHottest,
+                                        double(i) / (entries - 1));
         const dvec3 rgb = blackbodyRadiance(1 / inverse);
         const double luminance = blackbodyXyz(1 / inverse).y;
         table.entries.emplace_back(vec4(vec3(rgb / luminance), float(std::log2(luminance))));

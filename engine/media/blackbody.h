@@ -18,9 +18,11 @@ namespace tyndall {
 /// Blackbody radiance over temperature for a GPU, entries evenly spaced in 1/T, where log luminance is nearly straight.
 /// Interpolate linearly between entries: radiance = xyz · 2^w.
 struct BlackbodyTable {
-    static constexpr double kCoolest = 400;   // kelvin, entry 0; below, luminance is under 10⁻¹⁷ nits: 0
-    static constexpr double kHottest = 40000; // kelvin, last entry; hotter matter is shown as hot as this
-    std::vector<vec4> entries;                // xyz: linear sRGB for 1 nit; w: log2 of the luminance in nits
+    static constexpr double kCoolest =
+        400; // kelvin, entry 0; below, luminance is under 10⁻¹⁷ nits: 0
+    static constexpr double kHottest =
+        40000;                 // kelvin, last entry; hotter matter is shown as hot as this
+    std::vector<vec4> entries; // xyz: linear sRGB for 1 nit; w: log2 of the luminance in nits
 
     /// Where `kelvin` falls among the entries: 0 at kCoolest, entries-1 at kHottest.
     [[nodiscard]] double position(double kelvin) const;

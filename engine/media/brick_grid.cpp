@@ -28,13 +28,15 @@ double BrickGrid::sample(const dvec3& index) const {
     for (int axis = 0; axis < 3; ++axis) // written so that NaN is outside
         if (!(index[axis] >= bounds.minimum[axis] && index[axis] < bounds.maximum[axis])) return 0;
 
-    const CellPosition x = cellAt(index.x, origin.x), y = cellAt(index.y, origin.y), z = cellAt(index.z, origin.z);
+    const CellPosition x = cellAt(index.x, origin.x), y = cellAt(index.y, origin.y),
+                       z = cellAt(index.z, origin.z);
     const Brick& found = brick({x.cell / kBrickCells, y.cell / kBrickCells, z.cell / kBrickCells});
     if (found.slot == Brick::kNoSlot) return double(found.minimum);
 
     const int lx = x.cell % kBrickCells, ly = y.cell % kBrickCells, lz = z.cell % kBrickCells;
     constexpr int kRow = kBrickSamples, kSlice = kBrickSamples * kBrickSamples;
-    const float* corner = samples.data() + size_t(found.slot) * kBrickSampleCount + size_t(lz * kSlice + ly * kRow + lx);
+    const float* corner = samples.data() + size_t(found.slot) * kBrickSampleCount +
+                          size_t(lz * kSlice + ly * kRow + lx);
     const auto alongX = [&](int offset) {
         return double(corner[offset]) * (1 - x.fraction) + double(corner[offset + 1]) * x.fraction;
     };
@@ -51,7 +53,8 @@ Bounds BrickGrid::indexBounds() const {
     return bounds;
 }
 
-BrickGrid makeBrickGrid(const std::vector<float>& voxels, ivec3 first, ivec3 size, const dmat4& worldFromIndex) {
+BrickGrid makeBrickGrid(const std::vector<float>& voxels, ivec3 first, ivec3 size,
+                        const dmat4& worldFromIndex) {
     CHECK(size.x >= 0 && size.y >= 0 && size.z >= 0, "a grid has no negative size");
     CHECK(voxels.size() == size_t(size.x) * size_t(size.y) * size_t(size.z), "one value a voxel");
     SparseVoxels sparse;
@@ -63,8 +66,13 @@ BrickGrid makeBrickGrid(const std::vector<float>& voxels, ivec3 first, ivec3 siz
             for (int y = 0; y < kBlockSize; ++y)
                 for (int x = 0; x < kBlockSize; ++x, ++out) {
                     const ivec3 p = blockOrigin + ivec3(x, y, z) - first;
-                    const bool inside = p.x >= 0 && p.y >= 0 && p.z >= 0 && p.x < size.x && p.y < size.y && p.z < size.z;
-                    block[out] = !inside ? 0.0f : voxels[(size_t(p.z) * size_t(size.y) + size_t(p.y)) * size_t(size.x) + size_t(p.x)];
+                    const bool inside = p.x >= 0 && p.y >= 0 && p.z >= 0 && p.x < size.x &&
+                                        p.y < size.y && p.z < size.z;
+                    block[out] =
+                        !inside
+                            ? 0.0f
+                            : voxels[(size_t(p.z) * size_t(size.y) + size_t(p.y)) * size_t(size.x) +
+                                     size_t(p.x)];
                 }
     };
     const ivec3 begin = blockOriginOf(first);
@@ -75,7 +83,8 @@ BrickGrid makeBrickGrid(const std::vector<float>& voxels, ivec3 first, ivec3 siz
                 const Result<void> added = sparse.addBlock({x, y, z}, block);
                 CHECK(added.ok(), added.ok() ? "" : added.message());
             }
-    CHECK(sparse.repairs().total() == 0, "voxels are finite, not negative and at most kMaximumVoxel");
+    CHECK(sparse.repairs().total() == 0,
+          "voxels are finite, not negative and at most kMaximumVoxel");
     Result<BrickGrid> grid = sparse.build(worldFromIndex);
     CHECK(grid.ok(), grid.ok() ? "" : grid.message());
     return std::move(grid).value();

@@ -27,16 +27,20 @@ struct Brick {
 
 /// Immutable after construction; shared between scene, renderer and reference.
 struct BrickGrid {
-    ivec3 origin{0};           // index of the lowest voxel of brick (0,0,0); one below the first stored voxel
+    ivec3 origin{0}; // index of the lowest voxel of brick (0,0,0); one below the first stored voxel
     ivec3 brickCount{0};
-    std::vector<Brick> bricks; // x fastest, then y, then z
+    std::vector<Brick> bricks;  // x fastest, then y, then z
     std::vector<float> samples; // slotCount × 9³, x fastest
-    dmat4 worldFromIndex{1.0}; // the file's transform, any affine one ("world" is the medium's node space)
+    dmat4 worldFromIndex{
+        1.0}; // the file's transform, any affine one ("world" is the medium's node space)
     float minimum = 0, maximum = 0;
 
-    [[nodiscard]] uint32_t slotCount() const { return uint32_t(samples.size() / kBrickSampleCount); }
+    [[nodiscard]] uint32_t slotCount() const {
+        return uint32_t(samples.size() / kBrickSampleCount);
+    }
     [[nodiscard]] const Brick& brick(ivec3 b) const {
-        return bricks[(size_t(b.z) * size_t(brickCount.y) + size_t(b.y)) * size_t(brickCount.x) + size_t(b.x)];
+        return bricks[(size_t(b.z) * size_t(brickCount.y) + size_t(b.y)) * size_t(brickCount.x) +
+                      size_t(b.x)];
     }
     /// The field at an index position, trilinear, in double precision; 0 outside.
     [[nodiscard]] double sample(const dvec3& index) const;
@@ -47,6 +51,7 @@ struct BrickGrid {
 /// Builds bricks from dense voxels (x fastest), `first` being the index of the first one.
 /// Bricks whose samples are all equal store nothing; leading and trailing empty voxels are trimmed.
 /// CHECKs: one value a voxel; all finite, not negative, at most kMaximumVoxel (grid_import.h).
-BrickGrid makeBrickGrid(const std::vector<float>& voxels, ivec3 first, ivec3 size, const dmat4& worldFromIndex);
+BrickGrid makeBrickGrid(const std::vector<float>& voxels, ivec3 first, ivec3 size,
+                        const dmat4& worldFromIndex);
 
 } // namespace tyndall

@@ -9,7 +9,8 @@ namespace tyndall {
 namespace {
 
 size_t indexOf(ivec3 position, ivec3 size) {
-    return (size_t(position.z) * size_t(size.y) + size_t(position.y)) * size_t(size.x) + size_t(position.x);
+    return (size_t(position.z) * size_t(size.y) + size_t(position.y)) * size_t(size.x) +
+           size_t(position.x);
 }
 
 } // namespace
@@ -31,8 +32,10 @@ BrickPyramid::BrickPyramid(const BrickGrid& grid) {
                     PyramidCell merged = below.cells[indexOf(first, below.size)];
                     for (int child = 1; child < 8; ++child) {
                         const ivec3 p = first + ivec3(child & 1, (child >> 1) & 1, child >> 2);
-                        const bool inside = p.x < below.size.x && p.y < below.size.y && p.z < below.size.z;
-                        const PyramidCell& part = inside ? below.cells[indexOf(p, below.size)] : PyramidCell{};
+                        const bool inside =
+                            p.x < below.size.x && p.y < below.size.y && p.z < below.size.z;
+                        const PyramidCell& part =
+                            inside ? below.cells[indexOf(p, below.size)] : PyramidCell{};
                         merged.minimum = std::min(merged.minimum, part.minimum);
                         merged.maximum = std::max(merged.maximum, part.maximum);
                     }
@@ -44,8 +47,8 @@ BrickPyramid::BrickPyramid(const BrickGrid& grid) {
 
 const PyramidCell& BrickPyramid::cell(int level, ivec3 position) const {
     const Level& found = levels_[size_t(level)];
-    ASSERT(position.x >= 0 && position.y >= 0 && position.z >= 0 && position.x < found.size.x && position.y < found.size.y &&
-           position.z < found.size.z);
+    ASSERT(position.x >= 0 && position.y >= 0 && position.z >= 0 && position.x < found.size.x &&
+           position.y < found.size.y && position.z < found.size.z);
     return found.cells[indexOf(position, found.size)];
 }
 

@@ -26,7 +26,9 @@ public:
     /// CHECKs (debug): inside size(level).
     [[nodiscard]] const PyramidCell& cell(int level, ivec3 position) const;
     /// All cells of a level, x fastest.
-    [[nodiscard]] const std::vector<PyramidCell>& cells(int level) const { return levels_[size_t(level)].cells; }
+    [[nodiscard]] const std::vector<PyramidCell>& cells(int level) const {
+        return levels_[size_t(level)].cells;
+    }
 
 private:
     struct Level {

@@ -33,11 +33,15 @@ struct OpenFile {
 
 Result<GridInfo> parseGrid(const ReaderMessage& message, const std::string& file) {
     stream::GridRecord record;
-    const Error nonsense{fmt::format("'{}' is damaged: its reader describes a grid that makes no sense", file)};
-    if (message.type != stream::MessageType::Grid || message.payload.size() < sizeof record) return nonsense;
+    const Error nonsense{
+        fmt::format("'{}' is damaged: its reader describes a grid that makes no sense", file)};
+    if (message.type != stream::MessageType::Grid || message.payload.size() < sizeof record)
+        return nonsense;
     std::memcpy(&record, message.payload.data(), sizeof record);
-    const std::string_view text(message.payload.data() + sizeof record, message.payload.size() - sizeof record);
-    if (uint64_t(record.nameBytes) + record.typeBytes + record.classBytes != text.size()) return nonsense;
+    const std::string_view text(message.payload.data() + sizeof record,
+                                message.payload.size() - sizeof record);
+    if (uint64_t(record.nameBytes) + record.typeBytes + record.classBytes != text.size())
+        return nonsense;
 
     GridInfo grid;
     grid.name = printable(text.substr(0, record.nameBytes));
@@ -49,7 +53,8 @@ Result<GridInfo> parseGrid(const ReaderMessage& message, const std::string& file
     grid.affine = record.affine != 0;
     grid.importable = record.importable != 0;
     for (int column = 0; column < 4; ++column)
-        for (int row = 0; row < 4; ++row) grid.worldFromIndex[column][row] = record.worldFromIndex[column * 4 + row];
+        for (int row = 0; row < 4; ++row)
+            grid.worldFromIndex[column][row] = record.worldFromIndex[column * 4 + row];
     return grid;
 }
 
@@ -60,13 +65,17 @@ Result<OpenFile> openFile(const fs::path& path, const GridLimits& limits) {
     OpenFile open{std::move(reader).value(), printable(path.string()), {}};
     const Result<ReaderMessage> hello = open.reader.receive();
     if (!hello) return hello.error();
-    if (hello->type != stream::MessageType::Hello) return Error{fmt::format("'{}' cannot be used: its reader does not introduce itself", open.file)};
-    open.info.format = printable(std::string_view(hello->payload.data(), hello->payload.size()).substr(sizeof(uint32_t)));
+    if (hello->type != stream::MessageType::Hello)
+        return Error{
+            fmt::format("'{}' cannot be used: its reader does not introduce itself", open.file)};
+    open.info.format = printable(
+        std::string_view(hello->payload.data(), hello->payload.size()).substr(sizeof(uint32_t)));
     while (true) {
         const Result<ReaderMessage> message = open.reader.receive();
         if (!message) return message.error();
         if (message->type == stream::MessageType::ListEnd) return open;
-        if (open.info.grids.size() >= stream::kMaximumGrids) return Error{fmt::format("'{}' is damaged: it lists grids without end", open.file)};
+        if (open.info.grids.size() >= stream::kMaximumGrids)
+            return Error{fmt::format("'{}' is damaged: it lists grids without end", open.file)};
         Result<GridInfo> grid = parseGrid(*message, open.file);
         if (!grid) return grid.error();
         open.info.grids.push_back(std::move(grid).value());
@@ -76,7 +85,8 @@ Result<OpenFile> openFile(const fs::path& path, const GridLimits& limits) {
 /// Calls `each` with every record of the payload.
 template <typename Record, typename Function>
 Result<void> forEachRecord(const ReaderMessage& message, Function each) {
-    if (message.payload.size() % sizeof(Record) != 0) return Error{"its reader sent part of a block"};
+    if (message.payload.size() % sizeof(Record) != 0)
+        return Error{"its reader sent part of a block"};
     Record record;
     for (size_t offset = 0; offset < message.payload.size(); offset += sizeof(Record)) {
         std::memcpy(&record, message.payload.data() + offset, sizeof record);
@@ -89,19 +99,24 @@ Result<void> takeVoxels(const ReaderMessage& message, SparseVoxels& voxels) {
     switch (message.type) {
     case stream::MessageType::Blocks:
         return forEachRecord<stream::BlockRecord>(message, [&](const stream::BlockRecord& block) {
-            return voxels.addBlock({block.origin[0], block.origin[1], block.origin[2]}, block.values);
+            return voxels.addBlock({block.origin[0], block.origin[1], block.origin[2]},
+                                   block.values);
         });
     case stream::MessageType::Tiles:
         return forEachRecord<stream::TileRecord>(message, [&](const stream::TileRecord& tile) {
-            return voxels.addTile({tile.origin[0], tile.origin[1], tile.origin[2]}, tile.size, tile.value);
+            return voxels.addTile({tile.origin[0], tile.origin[1], tile.origin[2]}, tile.size,
+                                  tile.value);
         });
     default: return Error{"its reader sent something unexpected"};
     }
 }
 
-void noteRepairs(const VoxelRepairs& repairs, const std::string& place, std::vector<std::string>& notes) {
+void noteRepairs(const VoxelRepairs& repairs, const std::string& place,
+                 std::vector<std::string>& notes) {
     const auto note = [&](uint64_t count, const char* kind, const std::string& what) {
-        if (count > 0) notes.push_back(fmt::format("{}: {} {} voxel{} set to {}", place, count, kind, count == 1 ? " was" : "s were", what));
+        if (count > 0)
+            notes.push_back(fmt::format("{}: {} {} voxel{} set to {}", place, count, kind,
+                                        count == 1 ? " was" : "s were", what));
     };
     note(repairs.nonFinite, "non-finite", "0");
     note(repairs.negative, "negative", "0");
@@ -116,23 +131,30 @@ Result<void> checkTransform(const GridInfo& grid, const std::string& place) {
     if (!finite || m[0][3] != 0 || m[1][3] != 0 || m[2][3] != 0 || m[3][3] != 1)
         return Error{fmt::format("{} has a transform that is not affine", place)};
     // Relative to the columns' lengths, so that a grid in nanometres is as good as one in parsecs.
-    const double lengths = glm::length(dvec3(m[0])) * glm::length(dvec3(m[1])) * glm::length(dvec3(m[2]));
-    if (!(lengths > 0) || !std::isfinite(lengths) || !(std::abs(glm::determinant(dmat3(m))) > 1e-9 * lengths))
-        return Error{fmt::format("{} has a transform without an inverse: its voxels have no volume", place)};
+    const double lengths =
+        glm::length(dvec3(m[0])) * glm::length(dvec3(m[1])) * glm::length(dvec3(m[2]));
+    if (!(lengths > 0) || !std::isfinite(lengths) ||
+        !(std::abs(glm::determinant(dmat3(m))) > 1e-9 * lengths))
+        return Error{
+            fmt::format("{} has a transform without an inverse: its voxels have no volume", place)};
     return {};
 }
 
-Result<std::shared_ptr<const BrickGrid>> readGrid(OpenFile& open, size_t index, const GridLimits& limits, std::vector<std::string>& notes) {
+Result<std::shared_ptr<const BrickGrid>>
+readGrid(OpenFile& open, size_t index, const GridLimits& limits, std::vector<std::string>& notes) {
     const GridInfo& grid = open.info.grids[index];
     const std::string place = fmt::format("'{}': grid '{}'", open.file, grid.name);
     if (const Result<void> usable = checkTransform(grid, place); !usable) return usable.error();
-    if (const Result<void> asked = open.reader.send(stream::CommandType::Read, uint32_t(index)); !asked) return asked.error();
+    if (const Result<void> asked = open.reader.send(stream::CommandType::Read, uint32_t(index));
+        !asked)
+        return asked.error();
     SparseVoxels voxels(limits);
     while (true) {
         const Result<ReaderMessage> message = open.reader.receive();
         if (!message) return message.error();
         if (message->type == stream::MessageType::GridEnd) break;
-        if (const Result<void> taken = takeVoxels(*message, voxels); !taken) return Error{fmt::format("{} cannot be used: {}", place, taken.message())};
+        if (const Result<void> taken = takeVoxels(*message, voxels); !taken)
+            return Error{fmt::format("{} cannot be used: {}", place, taken.message())};
     }
     noteRepairs(voxels.repairs(), place, notes);
     Result<BrickGrid> bricks = voxels.build(grid.worldFromIndex);
@@ -151,12 +173,14 @@ Result<GridFile> importGrid(const fs::path& path, const GridRequest& request) {
     GridFile file;
     file.notes = std::move(selection->notes);
     file.densityName = open->info.grids[selection->density].name;
-    Result<std::shared_ptr<const BrickGrid>> density = readGrid(*open, selection->density, request.limits, file.notes);
+    Result<std::shared_ptr<const BrickGrid>> density =
+        readGrid(*open, selection->density, request.limits, file.notes);
     if (!density) return density.error();
     file.density = *density;
     if (selection->temperature) {
         file.temperatureName = open->info.grids[*selection->temperature].name;
-        Result<std::shared_ptr<const BrickGrid>> temperature = readGrid(*open, *selection->temperature, request.limits, file.notes);
+        Result<std::shared_ptr<const BrickGrid>> temperature =
+            readGrid(*open, *selection->temperature, request.limits, file.notes);
         if (!temperature) return temperature.error();
         file.temperature = *temperature;
     }
@@ -168,8 +192,11 @@ Result<GridFileInfo> gridInfo(const fs::path& path, const GridLimits& limits) {
     if (!open) return open.error();
     for (size_t i = 0; i < open->info.grids.size(); ++i) {
         GridInfo& grid = open->info.grids[i];
-        if (!grid.importable || grid.activeVoxels > 0) continue; // older files do not record the count
-        if (const Result<void> asked = open->reader.send(stream::CommandType::Measure, uint32_t(i)); !asked) return asked.error();
+        if (!grid.importable || grid.activeVoxels > 0)
+            continue; // older files do not record the count
+        if (const Result<void> asked = open->reader.send(stream::CommandType::Measure, uint32_t(i));
+            !asked)
+            return asked.error();
         const Result<ReaderMessage> message = open->reader.receive();
         if (!message) return message.error();
         Result<GridInfo> measured = parseGrid(*message, open->file);

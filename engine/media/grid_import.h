@@ -18,26 +18,29 @@ namespace tyndall {
 
 /// What an import may use. The defaults suit files of up to some gigabytes; tests choose smaller ones.
 struct GridLimits {
-    double seconds = 0;                         // of wall time for the reader; 0: 20 s and 1 s for every 10 MB of file
-    uint64_t readerBytes = uint64_t(16) << 30;  // address space of the reader process
-    uint64_t sampleBytes = uint64_t(4) << 30;   // of samples in one BrickGrid
-    uint64_t brickCount = uint64_t(1) << 24;    // entries of one brick table, empty ones included
+    double seconds = 0; // of wall time for the reader; 0: 20 s and 1 s for every 10 MB of file
+    uint64_t readerBytes = uint64_t(16) << 30; // address space of the reader process
+    uint64_t sampleBytes = uint64_t(4) << 30;  // of samples in one BrickGrid
+    uint64_t brickCount = uint64_t(1) << 24;   // entries of one brick table, empty ones included
 };
 
 /// Which grids to take from a file.
 struct GridRequest {
-    std::string density;          // a grid's name; "": by synonym (density, smoke …), else the only fog volume
-    std::string temperature;      // a grid's name; "": none, unless `findTemperature`
-    bool findTemperature = false; // look for a synonym (temperature, heat, flame, fuel); finding none is no error
+    std::string
+        density; // a grid's name; "": by synonym (density, smoke …), else the only fog volume
+    std::string temperature; // a grid's name; "": none, unless `findTemperature`
+    bool findTemperature =
+        false; // look for a synonym (temperature, heat, flame, fuel); finding none is no error
     GridLimits limits;
 };
 
 /// What importGrid found.
 struct GridFile {
-    std::shared_ptr<const BrickGrid> density;     // never null; values ≥ 0 and finite; may be empty (no bricks)
+    std::shared_ptr<const BrickGrid>
+        density; // never null; values ≥ 0 and finite; may be empty (no bricks)
     std::shared_ptr<const BrickGrid> temperature; // kelvin; null where none was asked for or found
     std::string densityName, temperatureName;     // as in the file
-    std::vector<std::string> notes;               // a sentence each: synonyms mapped, voxels set to 0 …
+    std::vector<std::string> notes; // a sentence each: synonyms mapped, voxels set to 0 …
 };
 
 /// Reads the density (and the temperature) of a .vdb or .nvdb file.
@@ -56,14 +59,16 @@ inline constexpr float kMaximumVoxel = 1e20f;
 
 /// One grid of a file, as `tyndall info FILE` shows it.
 struct GridInfo {
-    std::string name;             // may be empty, and need not be unique
-    std::string type;             // "float", "float (stored as half)", "double", "vec3s", "Fp8", "FpN", "unreadable" …
-    std::string gridClass;        // "fog volume", "level set", "staggered", "points", "unknown" …
+    std::string name; // may be empty, and need not be unique
+    std::string
+        type; // "float", "float (stored as half)", "double", "vec3s", "Fp8", "FpN", "unreadable" …
+    std::string gridClass; // "fog volume", "level set", "staggered", "points", "unknown" …
     uint64_t activeVoxels = 0;
-    ivec3 first{0}, last{-1};     // index-space box of the active voxels, inclusive; empty where last < first
-    bool affine = true;           // false: a frustum
-    dmat4 worldFromIndex{1.0};    // meaningless where not affine
-    bool importable = false;      // a scalar that could be density
+    ivec3 first{0},
+        last{-1};       // index-space box of the active voxels, inclusive; empty where last < first
+    bool affine = true; // false: a frustum
+    dmat4 worldFromIndex{1.0}; // meaningless where not affine
+    bool importable = false;   // a scalar that could be density
 };
 
 struct GridFileInfo {

@@ -9,15 +9,20 @@ namespace tyndall {
 
 namespace {
 
-constexpr const char* kDensityNames[] = {"density", "smoke", "soot", "fog", "cloud", "dust", "fume"};
-constexpr const char* kTemperatureNames[] = {"temperature", "temp", "heat", "flame", "fire", "fuel"};
+constexpr const char* kDensityNames[] = {"density", "smoke", "soot", "fog",
+                                         "cloud",   "dust",  "fume"};
+constexpr const char* kTemperatureNames[] = {"temperature", "temp", "heat",
+                                             "flame",       "fire", "fuel"};
 
 bool sameIgnoringCase(std::string_view a, std::string_view b) {
-    return std::equal(a.begin(), a.end(), b.begin(), b.end(),
-                      [](unsigned char x, unsigned char y) { return std::tolower(x) == std::tolower(y); });
+    return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](unsigned char x, unsigned char y) {
+        return std::tolower(x) == std::tolower(y);
+    });
 }
 
-std::string describe(const GridInfo& grid) { return fmt::format("'{}' ({}, {})", grid.name, grid.type, grid.gridClass); }
+std::string describe(const GridInfo& grid) {
+    return fmt::format("'{}' ({}, {})", grid.name, grid.type, grid.gridClass);
+}
 
 /// Why the grid cannot be a density or temperature; empty where it can.
 std::string whyNot(const GridInfo& grid) {
@@ -36,18 +41,24 @@ std::optional<size_t> findNamed(std::span<const GridInfo> grids, std::string_vie
 }
 
 /// The first usable grid with one of the names, in the order of the names.
-std::optional<size_t> findSynonym(std::span<const GridInfo> grids, std::span<const char* const> names) {
+std::optional<size_t> findSynonym(std::span<const GridInfo> grids,
+                                  std::span<const char* const> names) {
     for (const char* name : names)
         for (size_t i = 0; i < grids.size(); ++i)
             if (sameIgnoringCase(grids[i].name, name) && whyNot(grids[i]).empty()) return i;
     return std::nullopt;
 }
 
-Result<size_t> requireNamed(std::span<const GridInfo> grids, const std::string& name, const char* use, const std::string& file) {
+Result<size_t> requireNamed(std::span<const GridInfo> grids, const std::string& name,
+                            const char* use, const std::string& file) {
     const std::optional<size_t> found = findNamed(grids, name);
-    if (!found) return Error{fmt::format("'{}' has no grid '{}'; it has {}", file, name, describeGrids(grids))};
+    if (!found)
+        return Error{
+            fmt::format("'{}' has no grid '{}'; it has {}", file, name, describeGrids(grids))};
     if (const std::string reason = whyNot(grids[*found]); !reason.empty())
-        return Error{fmt::format("'{}': grid '{}' cannot be {}, because it {}; a scalar fog volume is needed", file, name, use, reason)};
+        return Error{fmt::format(
+            "'{}': grid '{}' cannot be {}, because it {}; a scalar fog volume is needed", file,
+            name, use, reason)};
     return *found;
 }
 
@@ -67,29 +78,40 @@ std::optional<size_t> findOnly(std::span<const GridInfo> grids) {
     return std::nullopt;
 }
 
-Result<size_t> selectDensity(std::span<const GridInfo> grids, const GridRequest& request, const std::string& file, GridSelection& selection) {
+Result<size_t> selectDensity(std::span<const GridInfo> grids, const GridRequest& request,
+                             const std::string& file, GridSelection& selection) {
     if (!request.density.empty()) return requireNamed(grids, request.density, "density", file);
     if (const std::optional<size_t> found = findSynonym(grids, kDensityNames)) {
         if (!sameIgnoringCase(grids[*found].name, kDensityNames[0]))
-            selection.notes.push_back(fmt::format("'{}': grid '{}' is taken as density", file, grids[*found].name));
+            selection.notes.push_back(
+                fmt::format("'{}': grid '{}' is taken as density", file, grids[*found].name));
         return *found;
     }
     if (const std::optional<size_t> found = findOnly(grids)) {
-        selection.notes.push_back(fmt::format("'{}': grid '{}' is taken as density, being the only one that can be", file, grids[*found].name));
+        selection.notes.push_back(
+            fmt::format("'{}': grid '{}' is taken as density, being the only one that can be", file,
+                        grids[*found].name));
         return *found;
     }
     if (grids.size() == 1)
-        return Error{fmt::format("'{}': its only grid '{}' cannot be density, because it {}; a scalar fog volume is needed", file, grids[0].name,
-                                 whyNot(grids[0]))};
-    if (grids.empty()) return Error{fmt::format("'{}' has no grids; a scalar fog volume is needed", file)};
-    const bool several = std::any_of(grids.begin(), grids.end(), [](const GridInfo& grid) { return whyNot(grid).empty(); });
+        return Error{fmt::format(
+            "'{}': its only grid '{}' cannot be density, because it {}; a scalar fog volume is needed",
+            file, grids[0].name, whyNot(grids[0]))};
+    if (grids.empty())
+        return Error{fmt::format("'{}' has no grids; a scalar fog volume is needed", file)};
+    const bool several = std::any_of(grids.begin(), grids.end(),
+                                     [](const GridInfo& grid) { return whyNot(grid).empty(); });
     return Error{fmt::format("'{}' has {}; {}", file, describeGrids(grids),
-                             several ? "say which one is density" : "none of them is a scalar fog volume that could be density")};
+                             several
+                                 ? "say which one is density"
+                                 : "none of them is a scalar fog volume that could be density")};
 }
 
 void noteMissingClass(const GridInfo& grid, const std::string& file, GridSelection& selection) {
     if (grid.gridClass == "unknown")
-        selection.notes.push_back(fmt::format("'{}': grid '{}' does not say its class and is taken as a fog volume", file, grid.name));
+        selection.notes.push_back(
+            fmt::format("'{}': grid '{}' does not say its class and is taken as a fog volume", file,
+                        grid.name));
 }
 
 } // namespace
@@ -98,12 +120,14 @@ std::string describeGrids(std::span<const GridInfo> grids) {
     if (grids.empty()) return "no grids";
     std::string text;
     constexpr size_t kShown = 12;
-    for (size_t i = 0; i < std::min(grids.size(), kShown); ++i) text += (i ? ", " : "") + describe(grids[i]);
+    for (size_t i = 0; i < std::min(grids.size(), kShown); ++i)
+        text += (i ? ", " : "") + describe(grids[i]);
     if (grids.size() > kShown) text += fmt::format(" and {} more", grids.size() - kShown);
     return text;
 }
 
-Result<GridSelection> selectGrids(std::span<const GridInfo> grids, const GridRequest& request, const std::string& file) {
+Result<GridSelection> selectGrids(std::span<const GridInfo> grids, const GridRequest& request,
+                                  const std::string& file) {
     GridSelection selection;
     const Result<size_t> density = selectDensity(grids, request, file, selection);
     if (!density) return density.error();
@@ -111,13 +135,16 @@ Result<GridSelection> selectGrids(std::span<const GridInfo> grids, const GridReq
     noteMissingClass(grids[*density], file, selection);
 
     if (!request.temperature.empty()) {
-        const Result<size_t> temperature = requireNamed(grids, request.temperature, "temperature", file);
+        const Result<size_t> temperature =
+            requireNamed(grids, request.temperature, "temperature", file);
         if (!temperature) return temperature.error();
         selection.temperature = *temperature;
     } else if (request.findTemperature) {
         selection.temperature = findSynonym(grids, kTemperatureNames);
-        if (selection.temperature && !sameIgnoringCase(grids[*selection.temperature].name, kTemperatureNames[0]))
-            selection.notes.push_back(fmt::format("'{}': grid '{}' is taken as temperature", file, grids[*selection.temperature].name));
+        if (selection.temperature &&
+            !sameIgnoringCase(grids[*selection.temperature].name, kTemperatureNames[0]))
+            selection.notes.push_back(fmt::format("'{}': grid '{}' is taken as temperature", file,
+                                                  grids[*selection.temperature].name));
     }
     return selection;
 }

@@ -25,13 +25,13 @@ enum class PhaseFunction : int32_t { HenyeyGreenstein = 0, Rayleigh = 1, Cornett
 struct Medium {
     std::string name;
     MediumKind kind = MediumKind::Everywhere;
-    dvec3 size{1.0};          // Box, Sphere: node space
-    double scaleHeight = 1;   // Height: metres of the world, > 0
-    vec3 scattering{0};       // per metre, ≥ 0; a grid multiplies all coefficients by its density
-    vec3 absorption{0};       // per metre, ≥ 0
-    float anisotropy = 0;     // mean cosine parameter g, -1 < g < 1
+    dvec3 size{1.0};        // Box, Sphere: node space
+    double scaleHeight = 1; // Height: metres of the world, > 0
+    vec3 scattering{0};     // per metre, ≥ 0; a grid multiplies all coefficients by its density
+    vec3 absorption{0};     // per metre, ≥ 0
+    float anisotropy = 0;   // mean cosine parameter g, -1 < g < 1
     PhaseFunction phase = PhaseFunction::HenyeyGreenstein;
-    vec3 emission{0};         // nits per metre, times density for a grid
+    vec3 emission{0};           // nits per metre, times density for a grid
     float temperatureScale = 0; // > 0: blackbody emission from `temperature`, times this
     std::shared_ptr<const BrickGrid> density;     // Grid
     std::shared_ptr<const BrickGrid> temperature; // Grid, kelvin; may be null

@@ -46,17 +46,24 @@ bool isHeader(const std::vector<std::string_view>& values) {
     return true;
 }
 
-Result<Particle> parseParticle(const std::vector<std::string_view>& values, const std::string& place) {
+Result<Particle> parseParticle(const std::vector<std::string_view>& values,
+                               const std::string& place) {
     float numbers[kAllColumns] = {};
     for (size_t i = 0; i < values.size(); ++i) {
         const std::string_view text = values[i];
-        const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), numbers[i]);
+        const auto [end, error] =
+            std::from_chars(text.data(), text.data() + text.size(), numbers[i]);
         if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(numbers[i]))
-            return Error{fmt::format("{}: {} is {}; a finite number is needed", place, kColumns[i], quoted(text))};
+            return Error{fmt::format("{}: {} is {}; a finite number is needed", place, kColumns[i],
+                                     quoted(text))};
     }
-    if (!(numbers[3] > 0)) return Error{fmt::format("{}: radius is {}; it must be greater than 0", place, numbers[3])};
-    if (numbers[4] < 0) return Error{fmt::format("{}: density is {}; it must not be negative", place, numbers[4])};
-    if (numbers[5] < 0) return Error{fmt::format("{}: temperature is {}; it must not be negative", place, numbers[5])};
+    if (!(numbers[3] > 0))
+        return Error{fmt::format("{}: radius is {}; it must be greater than 0", place, numbers[3])};
+    if (numbers[4] < 0)
+        return Error{fmt::format("{}: density is {}; it must not be negative", place, numbers[4])};
+    if (numbers[5] < 0)
+        return Error{
+            fmt::format("{}: temperature is {}; it must not be negative", place, numbers[5])};
     return Particle{{numbers[0], numbers[1], numbers[2]}, numbers[3], numbers[4], numbers[5]};
 }
 
@@ -99,13 +106,15 @@ ParticleSet makeCloud(int64_t count, uint64_t seed, double radius) {
     ParticleSet set;
     const double size = std::min(0.35, 0.5 / std::cbrt(double(count)) + 0.02);
     for (int64_t i = 0; i < count; ++i) {
-        const Puff& puff = puffs[std::min(size_t(random.uniform() * double(puffs.size())), puffs.size() - 1)];
+        const Puff& puff =
+            puffs[std::min(size_t(random.uniform() * double(puffs.size())), puffs.size() - 1)];
         dvec3 p = puff.centre + (puff.radius - 0.5 * size) * random.inBall();
         p.y = std::max(p.y, kBase);
         const double ball = size * (0.75 + 0.5 * random.uniform());
         const double reach = glm::length(p) + ball;
         if (reach > 1) p *= (1 - ball) / glm::length(p);
-        set.particles.push_back({vec3(radius * p), float(radius * ball), float(0.5 + 0.5 * random.uniform()), 0});
+        set.particles.push_back(
+            {vec3(radius * p), float(radius * ball), float(0.5 + 0.5 * random.uniform()), 0});
     }
     return set;
 }
@@ -133,19 +142,29 @@ Result<ParticleSet> parseParticles(std::string_view csv, std::string_view name) 
         const std::string place = fmt::format("'{}', line {}", name, line);
         const std::vector<std::string_view> values = splitLine(text);
         if (columns == 0) {
-            if (!isHeader(values)) return Error{fmt::format("{}: the header is {}; it must be x,y,z,radius,density or x,y,z,radius,density,temperature", place, quoted(trimmed(text)))};
+            if (!isHeader(values))
+                return Error{fmt::format(
+                    "{}: the header is {}; it must be x,y,z,radius,density or x,y,z,radius,density,temperature",
+                    place, quoted(trimmed(text)))};
             columns = values.size();
             continue;
         }
         if (values.size() != columns)
-            return Error{fmt::format("{}: {} values; the header has {}", place, values.size() > kAllColumns ? "too many" : std::to_string(values.size()), columns)};
-        if (set.particles.size() == kMaximumParticles) return Error{fmt::format("{}: more than {} particles", place, kMaximumParticles)};
+            return Error{fmt::format(
+                "{}: {} values; the header has {}", place,
+                values.size() > kAllColumns ? "too many" : std::to_string(values.size()), columns)};
+        if (set.particles.size() == kMaximumParticles)
+            return Error{fmt::format("{}: more than {} particles", place, kMaximumParticles)};
         const Result<Particle> particle = parseParticle(values, place);
         if (!particle) return particle.error();
         set.particles.push_back(*particle);
     }
-    if (columns == 0) return Error{fmt::format("'{}' is empty; its first line must be x,y,z,radius,density or x,y,z,radius,density,temperature", name)};
-    if (set.particles.empty()) return Error{fmt::format("'{}' holds no particles, only a header", name)};
+    if (columns == 0)
+        return Error{fmt::format(
+            "'{}' is empty; its first line must be x,y,z,radius,density or x,y,z,radius,density,temperature",
+            name)};
+    if (set.particles.empty())
+        return Error{fmt::format("'{}' holds no particles, only a header", name)};
     set.hasTemperature = columns == kAllColumns;
     return set;
 }
@@ -156,11 +175,16 @@ Result<ParticleSet> readParticles(const std::filesystem::path& path) {
     return parseParticles(*text, path.string());
 }
 
-Result<ParticleSet> generateParticles(std::string_view kind, int64_t count, uint64_t seed, double radius) {
-    if (kind != "cloud") return Error{fmt::format("particles cannot be generated as {}; the one kind is 'cloud'", quoted(kind))};
-    if (count < 1 || count > 1'000'000) return Error{fmt::format("{} particles cannot be generated; 1 to 1000000 can", count)};
+Result<ParticleSet> generateParticles(std::string_view kind, int64_t count, uint64_t seed,
+                                      double radius) {
+    if (kind != "cloud")
+        return Error{fmt::format("particles cannot be generated as {}; the one kind is 'cloud'",
+                                 quoted(kind))};
+    if (count < 1 || count > 1'000'000)
+        return Error{fmt::format("{} particles cannot be generated; 1 to 1000000 can", count)};
     if (!(radius > 0) || !std::isfinite(radius) || radius > 1e30)
-        return Error{fmt::format("a cloud cannot have the radius {}; it must be greater than 0 and finite", radius)};
+        return Error{fmt::format(
+            "a cloud cannot have the radius {}; it must be greater than 0 and finite", radius)};
     return makeCloud(count, seed, radius);
 }
 

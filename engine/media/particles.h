@@ -36,6 +36,7 @@ Result<ParticleSet> readParticles(const std::filesystem::path& path);
 
 /// `"generate": {"kind": …}`. The only kind is "cloud": overlapping puffs above a flat base, within `radius` metres of the
 /// origin; count 1..1,000,000. The same arguments give the same particles everywhere. Errors: unknown kind, range.
-Result<ParticleSet> generateParticles(std::string_view kind, int64_t count, uint64_t seed, double radius);
+Result<ParticleSet> generateParticles(std::string_view kind, int64_t count, uint64_t seed,
+                                      double radius);
 
 } // namespace tyndall

@@ -34,8 +34,9 @@ Result<fs::path> findReader() {
         const fs::path candidate = (folder / relative / kReaderName).lexically_normal();
         if (::access(candidate.c_str(), X_OK) == 0) return candidate;
     }
-    return Error{fmt::format("volumes cannot be read, because the program '{}' is missing beside this one in '{}' (TYNDALL_GRID_READER can name it)",
-                             kReaderName, folder.string())};
+    return Error{fmt::format(
+        "volumes cannot be read, because the program '{}' is missing beside this one in '{}' (TYNDALL_GRID_READER can name it)",
+        kReaderName, folder.string())};
 }
 
 struct SpawnActions {
@@ -63,7 +64,9 @@ struct SpawnAttributes {
     SpawnAttributes& operator=(const SpawnAttributes&) = delete;
 };
 
-bool isContinuation(std::string_view text, size_t i) { return i < text.size() && (static_cast<unsigned char>(text[i]) & 0xc0) == 0x80; }
+bool isContinuation(std::string_view text, size_t i) {
+    return i < text.size() && (static_cast<unsigned char>(text[i]) & 0xc0) == 0x80;
+}
 
 } // namespace
 
@@ -75,7 +78,10 @@ std::string printable(std::string_view text) {
             result += text[i];
             continue;
         }
-        const size_t length = byte >= 0xc2 && byte < 0xe0 ? 2 : byte >= 0xe0 && byte < 0xf0 ? 3 : byte >= 0xf0 && byte < 0xf5 ? 4 : 0;
+        const size_t length = byte >= 0xc2 && byte < 0xe0   ? 2
+                              : byte >= 0xe0 && byte < 0xf0 ? 3
+                              : byte >= 0xf0 && byte < 0xf5 ? 4
+                                                            : 0;
         bool whole = length > 0;
         for (size_t k = 1; k < length; ++k) whole = whole && isContinuation(text, i + k);
         // C1 control characters (U+0080 to U+009F) would reach the terminal too.
@@ -97,13 +103,16 @@ Result<ReaderProcess> ReaderProcess::start(const fs::path& file, const GridLimit
 
     ReaderProcess process;
     process.file_ = printable(file.string());
-    process.seconds_ = limits.seconds > 0 ? limits.seconds : 20.0 + (error ? 0.0 : double(fileBytes) / 10e6);
+    process.seconds_ =
+        limits.seconds > 0 ? limits.seconds : 20.0 + (error ? 0.0 : double(fileBytes) / 10e6);
     process.deadline_ = std::chrono::steady_clock::now() +
-                        std::chrono::duration_cast<std::chrono::steady_clock::duration>(std::chrono::duration<double>(process.seconds_));
+                        std::chrono::duration_cast<std::chrono::steady_clock::duration>(
+                            std::chrono::duration<double>(process.seconds_));
 
     int ends[2];
     if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0)
-        return Error{fmt::format("'{}' cannot be read: no socket for the reader: {}", process.file_, std::strerror(errno))};
+        return Error{fmt::format("'{}' cannot be read: no socket for the reader: {}", process.file_,
+                                 std::strerror(errno))};
     process.socket_ = ends[0];
 
     SpawnActions spawn;
@@ -112,20 +121,25 @@ Result<ReaderProcess> ReaderProcess::start(const fs::path& file, const GridLimit
     posix_spawn_file_actions_addopen(&spawn.actions, STDERR_FILENO, "/dev/null", O_WRONLY, 0);
     const SpawnAttributes attributes;
 
-    std::string arguments[] = {reader->string(), file.string(), std::to_string(limits.readerBytes), std::to_string(uint64_t(process.seconds_) + 1)};
-    char* argv[] = {arguments[0].data(), arguments[1].data(), arguments[2].data(), arguments[3].data(), nullptr};
-    const int failure = ::posix_spawn(&process.child_, argv[0], &spawn.actions, &attributes.attributes, argv, environ);
+    std::string arguments[] = {reader->string(), file.string(), std::to_string(limits.readerBytes),
+                               std::to_string(uint64_t(process.seconds_) + 1)};
+    char* argv[] = {arguments[0].data(), arguments[1].data(), arguments[2].data(),
+                    arguments[3].data(), nullptr};
+    const int failure = ::posix_spawn(&process.child_, argv[0], &spawn.actions,
+                                      &attributes.attributes, argv, environ);
     ::close(ends[1]);
     if (failure != 0) {
         process.child_ = -1;
-        return Error{fmt::format("'{}' cannot be read: '{}' does not start: {}", process.file_, arguments[0], std::strerror(failure))};
+        return Error{fmt::format("'{}' cannot be read: '{}' does not start: {}", process.file_,
+                                 arguments[0], std::strerror(failure))};
     }
     return process;
 }
 
 ReaderProcess::ReaderProcess(ReaderProcess&& other) noexcept
-    : child_(std::exchange(other.child_, -1)), socket_(std::exchange(other.socket_, -1)), file_(std::move(other.file_)),
-      format_(std::move(other.format_)), seconds_(other.seconds_), deadline_(other.deadline_) {}
+    : child_(std::exchange(other.child_, -1)), socket_(std::exchange(other.socket_, -1)),
+      file_(std::move(other.file_)), format_(std::move(other.format_)), seconds_(other.seconds_),
+      deadline_(other.deadline_) {}
 
 ReaderProcess::~ReaderProcess() { stop(); }
 
@@ -140,7 +154,9 @@ int ReaderProcess::stop() {
     return status;
 }
 
-Error ReaderProcess::damaged(const std::string& reason) const { return Error{fmt::format("'{}' cannot be used: {}", file_, reason)}; }
+Error ReaderProcess::damaged(const std::string& reason) const {
+    return Error{fmt::format("'{}' cannot be used: {}", file_, reason)};
+}
 
 Error ReaderProcess::explainEnd() {
     // The stream ended. The child has ended or is about to: a moment to do so tells a crash from a kill.
@@ -155,22 +171,30 @@ Error ReaderProcess::explainEnd() {
         ::usleep(10000);
     }
     if (status >= 0 && WIFSIGNALED(status) && WTERMSIG(status) == SIGXCPU)
-        return Error{fmt::format("'{}' is damaged or too large: reading it took more than {:.0f} s", file_, seconds_)};
+        return Error{fmt::format("'{}' is damaged or too large: reading it took more than {:.0f} s",
+                                 file_, seconds_)};
     if (status >= 0 && WIFSIGNALED(status))
-        return Error{fmt::format("'{}' is damaged: the {} reader crashed on it (signal {})", file_, format_, WTERMSIG(status))};
-    return Error{fmt::format("'{}' is damaged: the {} reader ended before it was done", file_, format_)};
+        return Error{fmt::format("'{}' is damaged: the {} reader crashed on it (signal {})", file_,
+                                 format_, WTERMSIG(status))};
+    return Error{
+        fmt::format("'{}' is damaged: the {} reader ended before it was done", file_, format_)};
 }
 
 Result<void> ReaderProcess::receiveBytes(void* data, size_t bytes) {
     char* next = static_cast<char*>(data);
     while (bytes > 0) {
-        const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(deadline_ - std::chrono::steady_clock::now()).count();
+        const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(
+                              deadline_ - std::chrono::steady_clock::now())
+                              .count();
         pollfd waiting{socket_, POLLIN, 0};
-        const int ready = left <= 0 ? 0 : ::poll(&waiting, 1, int(std::min<long long>(left, 1 << 30)));
+        const int ready =
+            left <= 0 ? 0 : ::poll(&waiting, 1, int(std::min<long long>(left, 1 << 30)));
         if (ready < 0 && errno == EINTR) continue;
         if (ready == 0) {
             stop();
-            return Error{fmt::format("'{}' is damaged or too large: reading it took more than {:.0f} s", file_, seconds_)};
+            return Error{
+                fmt::format("'{}' is damaged or too large: reading it took more than {:.0f} s",
+                            file_, seconds_)};
         }
         const ssize_t got = ::recv(socket_, next, bytes, 0);
         if (got < 0 && errno == EINTR) continue;
@@ -185,9 +209,11 @@ Result<ReaderMessage> ReaderProcess::receive() {
     stream::MessageHeader header;
     if (const Result<void> got = receiveBytes(&header, sizeof header); !got) return got.error();
     if (header.magic != stream::kMagic || header.bytes > stream::kMaximumMessageBytes)
-        return Error{fmt::format("'{}' is damaged: the {} reader lost its way in it", file_, format_)};
+        return Error{
+            fmt::format("'{}' is damaged: the {} reader lost its way in it", file_, format_)};
     ReaderMessage message{header.type, std::vector<char>(header.bytes)};
-    if (const Result<void> got = receiveBytes(message.payload.data(), message.payload.size()); !got) return got.error();
+    if (const Result<void> got = receiveBytes(message.payload.data(), message.payload.size()); !got)
+        return got.error();
 
     const std::string_view text(message.payload.data(), message.payload.size());
     if (message.type == stream::MessageType::Failure) return damaged(printable(text));
@@ -196,7 +222,8 @@ Result<ReaderMessage> ReaderProcess::receive() {
         if (text.size() < sizeof version) return damaged("its reader says nothing sensible");
         std::memcpy(&version, text.data(), sizeof version);
         if (version != stream::kStreamVersion)
-            return damaged(fmt::format("{} is of another version of tyndall (it speaks {}, not {})", kReaderName, version, stream::kStreamVersion));
+            return damaged(fmt::format("{} is of another version of tyndall (it speaks {}, not {})",
+                                       kReaderName, version, stream::kStreamVersion));
         format_ = printable(text.substr(sizeof version));
         format_ = format_.substr(0, format_.find(' ')); // without the file version
     }
@@ -206,7 +233,8 @@ Result<ReaderMessage> ReaderProcess::receive() {
 Result<void> ReaderProcess::send(stream::CommandType type, uint32_t grid) {
     const stream::Command command{stream::kMagic, type, grid};
     // Smaller than any socket's buffer, so that it is sent whole or not at all.
-    if (::send(socket_, &command, sizeof command, MSG_NOSIGNAL) != ssize_t(sizeof command)) return explainEnd();
+    if (::send(socket_, &command, sizeof command, MSG_NOSIGNAL) != ssize_t(sizeof command))
+        return explainEnd();
     return {};
 }
 

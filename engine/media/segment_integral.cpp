@@ -23,7 +23,8 @@ struct Interval {
 struct LocalRay {
     dvec3 origin, direction;
     LocalRay(const RaySegment& segment, const dmat4& localFromWorld)
-        : origin(localFromWorld * dvec4(segment.origin, 1)), direction(localFromWorld * dvec4(segment.direction, 0)) {}
+        : origin(localFromWorld * dvec4(segment.origin, 1)),
+          direction(localFromWorld * dvec4(segment.direction, 0)) {}
     [[nodiscard]] dvec3 at(double t) const { return origin + t * direction; }
 };
 
@@ -31,7 +32,8 @@ Interval clipToBox(const LocalRay& ray, const dvec3& minimum, const dvec3& maxim
     Interval inside{0, length};
     for (int axis = 0; axis < 3; ++axis) {
         if (ray.direction[axis] == 0) {
-            if (!(ray.origin[axis] >= minimum[axis] && ray.origin[axis] <= maximum[axis])) return {};
+            if (!(ray.origin[axis] >= minimum[axis] && ray.origin[axis] <= maximum[axis]))
+                return {};
             continue;
         }
         const double a = (minimum[axis] - ray.origin[axis]) / ray.direction[axis];
@@ -64,17 +66,23 @@ double integrateAbove(double y, double slope, double length, double scaleHeight)
     return denser * length * oneMinusExpOverX(rate * length);
 }
 
-double integrateHeight(const Medium& medium, const dmat4& worldFromMedium, const RaySegment& segment) {
+double integrateHeight(const Medium& medium, const dmat4& worldFromMedium,
+                       const RaySegment& segment) {
     const dvec3 up = glm::normalize(dvec3(worldFromMedium[1]));
     const double y = glm::dot(segment.origin - dvec3(worldFromMedium[3]), up);
     const double slope = glm::dot(segment.direction, up);
-    if (slope == 0) return y <= 0 ? segment.length : integrateAbove(y, 0, segment.length, medium.scaleHeight);
+    if (slope == 0)
+        return y <= 0 ? segment.length : integrateAbove(y, 0, segment.length, medium.scaleHeight);
 
-    const double crossing = std::clamp(-y / slope, 0.0, segment.length); // of the height 0, where the density stops at 1
-    if (slope > 0) // from below upwards
-        return crossing + integrateAbove(std::max(y, 0.0), slope, segment.length - crossing, medium.scaleHeight);
+    const double crossing = std::clamp(
+        -y / slope, 0.0, segment.length); // of the height 0, where the density stops at 1
+    if (slope > 0)                        // from below upwards
+        return crossing + integrateAbove(std::max(y, 0.0), slope, segment.length - crossing,
+                                         medium.scaleHeight);
     const double below = segment.length - crossing;
-    return integrateAbove(std::max(y, 0.0), slope, std::min(crossing, segment.length), medium.scaleHeight) + below;
+    return integrateAbove(std::max(y, 0.0), slope, std::min(crossing, segment.length),
+                          medium.scaleHeight) +
+           below;
 }
 
 dmat4 unitBallFromWorld(const Medium& medium, const dmat4& worldFromMedium) {
@@ -89,14 +97,16 @@ public:
     CellWalk(const LocalRay& ray, Interval range) : ray_(ray), end_(range.end), t_(range.begin) {
         const dvec3 start = ray.at(range.begin);
         for (int axis = 0; axis < 3; ++axis) {
-            plane_[axis] = ray.direction[axis] > 0 ? std::floor(start[axis]) + 1 : std::ceil(start[axis]) - 1;
+            plane_[axis] =
+                ray.direction[axis] > 0 ? std::floor(start[axis]) + 1 : std::ceil(start[axis]) - 1;
             crossing_[axis] = crossingOf(axis);
         }
     }
     [[nodiscard]] bool done() const { return t_ >= end_; }
     /// The part of the ray in the next cell; may be empty where two planes are crossed at once.
     Interval next() {
-        const double stop = std::max(t_, std::min({crossing_[0], crossing_[1], crossing_[2], end_}));
+        const double stop =
+            std::max(t_, std::min({crossing_[0], crossing_[1], crossing_[2], end_}));
         const Interval part{t_, stop};
         for (int axis = 0; axis < 3; ++axis)
             while (crossing_[axis] <= stop && crossing_[axis] < end_) {
@@ -109,7 +119,9 @@ public:
 
 private:
     [[nodiscard]] double crossingOf(int axis) const {
-        return ray_.direction[axis] == 0 ? kInfinity : (plane_[axis] - ray_.origin[axis]) / ray_.direction[axis];
+        return ray_.direction[axis] == 0
+                   ? kInfinity
+                   : (plane_[axis] - ray_.origin[axis]) / ray_.direction[axis];
     }
     const LocalRay& ray_;
     double end_, t_;
@@ -121,44 +133,63 @@ private:
 dvec3 segmentSource(const dvec3& source, const dvec3& extinction, double length) {
     dvec3 result;
     for (int c = 0; c < 3; ++c) {
-        if (source[c] == 0) result[c] = 0; // even where the segment has no end
-        else if (std::isinf(length)) result[c] = extinction[c] > 0 ? source[c] / extinction[c] : kInfinity;
-        else result[c] = source[c] * length * oneMinusExpOverX(extinction[c] * length);
+        if (source[c] == 0)
+            result[c] = 0; // even where the segment has no end
+        else if (std::isinf(length))
+            result[c] = extinction[c] > 0 ? source[c] / extinction[c] : kInfinity;
+        else
+            result[c] = source[c] * length * oneMinusExpOverX(extinction[c] * length);
     }
     return result;
 }
 
 double mediumDensity(const Medium& medium, const dmat4& worldFromMedium, const dvec3& position) {
-    const auto local = [&](const dmat4& localFromWorld) { return dvec3(localFromWorld * dvec4(position, 1)); };
+    const auto local = [&](const dmat4& localFromWorld) {
+        return dvec3(localFromWorld * dvec4(position, 1));
+    };
     switch (medium.kind) {
     case MediumKind::Everywhere: return 1;
     case MediumKind::Box: {
         const dvec3 p = glm::abs(local(glm::inverse(worldFromMedium)));
-        return p.x <= medium.size.x / 2 && p.y <= medium.size.y / 2 && p.z <= medium.size.z / 2 ? 1 : 0;
+        return p.x <= medium.size.x / 2 && p.y <= medium.size.y / 2 && p.z <= medium.size.z / 2 ? 1
+                                                                                                : 0;
     }
-    case MediumKind::Sphere: return glm::length(local(unitBallFromWorld(medium, worldFromMedium))) <= 1 ? 1 : 0;
+    case MediumKind::Sphere:
+        return glm::length(local(unitBallFromWorld(medium, worldFromMedium))) <= 1 ? 1 : 0;
     case MediumKind::Height: {
-        const double y = glm::dot(position - dvec3(worldFromMedium[3]), glm::normalize(dvec3(worldFromMedium[1])));
+        const double y = glm::dot(position - dvec3(worldFromMedium[3]),
+                                  glm::normalize(dvec3(worldFromMedium[1])));
         return y <= 0 ? 1 : std::exp(-y / medium.scaleHeight);
     }
     case MediumKind::Grid:
-        return medium.density ? medium.density->sample(local(glm::inverse(worldFromMedium * medium.density->worldFromIndex))) : 0;
+        return medium.density ? medium.density->sample(local(
+                                    glm::inverse(worldFromMedium * medium.density->worldFromIndex)))
+                              : 0;
     case MediumKind::Particles: return 0;
     }
     return 0;
 }
 
-double densityLength(const Medium& medium, const dmat4& worldFromMedium, const RaySegment& segment) {
-    CHECK(std::abs(glm::length(segment.direction) - 1) < 1e-6, "the segment's direction must be a unit vector");
+double densityLength(const Medium& medium, const dmat4& worldFromMedium,
+                     const RaySegment& segment) {
+    CHECK(std::abs(glm::length(segment.direction) - 1) < 1e-6,
+          "the segment's direction must be a unit vector");
     if (!(segment.length > 0)) return 0;
     switch (medium.kind) {
     case MediumKind::Everywhere: return segment.length;
     case MediumKind::Box:
-        return clipToBox({segment, glm::inverse(worldFromMedium)}, -0.5 * medium.size, 0.5 * medium.size, segment.length).length();
-    case MediumKind::Sphere: return clipToUnitBall({segment, unitBallFromWorld(medium, worldFromMedium)}, segment.length).length();
+        return clipToBox({segment, glm::inverse(worldFromMedium)}, -0.5 * medium.size,
+                         0.5 * medium.size, segment.length)
+            .length();
+    case MediumKind::Sphere:
+        return clipToUnitBall({segment, unitBallFromWorld(medium, worldFromMedium)}, segment.length)
+            .length();
     case MediumKind::Height: return integrateHeight(medium, worldFromMedium, segment);
     case MediumKind::Grid:
-        return medium.density ? integrateGrid(*medium.density, worldFromMedium * medium.density->worldFromIndex, segment) : 0;
+        return medium.density
+                   ? integrateGrid(*medium.density,
+                                   worldFromMedium * medium.density->worldFromIndex, segment)
+                   : 0;
     case MediumKind::Particles: return 0;
     }
     return 0;
@@ -172,7 +203,8 @@ dvec3 opticalDepth(const Medium& medium, const dmat4& worldFromMedium, const Ray
     return depth;
 }
 
-double integrateGrid(const BrickGrid& grid, const dmat4& worldFromIndex, const RaySegment& segment) {
+double integrateGrid(const BrickGrid& grid, const dmat4& worldFromIndex,
+                     const RaySegment& segment) {
     if (grid.bricks.empty()) return 0;
     const LocalRay ray(segment, glm::inverse(worldFromIndex));
     const Bounds bounds = grid.indexBounds();
@@ -185,7 +217,8 @@ double integrateGrid(const BrickGrid& grid, const dmat4& worldFromIndex, const R
         if (part.length() == 0) continue;
         const double middle = 0.5 * (part.begin + part.end);
         sum += part.length() / 6 *
-               (grid.sample(ray.at(part.begin)) + 4 * grid.sample(ray.at(middle)) + grid.sample(ray.at(part.end)));
+               (grid.sample(ray.at(part.begin)) + 4 * grid.sample(ray.at(middle)) +
+                grid.sample(ray.at(part.end)));
     }
     return sum;
 }

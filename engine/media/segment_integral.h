@@ -20,17 +20,21 @@ struct RaySegment {
 [[nodiscard]] dvec3 segmentSource(const dvec3& source, const dvec3& extinction, double length);
 
 /// The density at a point of the world; `worldFromMedium` is the node's transform (any invertible affine one).
-[[nodiscard]] double mediumDensity(const Medium& medium, const dmat4& worldFromMedium, const dvec3& position);
+[[nodiscard]] double mediumDensity(const Medium& medium, const dmat4& worldFromMedium,
+                                   const dvec3& position);
 
 /// ∫ density dt over the segment, metres. Closed form for the homogeneous shapes and for height fog; through a grid
 /// exact up to rounding, see integrateGrid. Particles give 0. CHECKs: unit direction.
-[[nodiscard]] double densityLength(const Medium& medium, const dmat4& worldFromMedium, const RaySegment& segment);
+[[nodiscard]] double densityLength(const Medium& medium, const dmat4& worldFromMedium,
+                                   const RaySegment& segment);
 
 /// Optical depth per channel: extinction × densityLength. 0 where the extinction is 0, however long the segment.
-[[nodiscard]] dvec3 opticalDepth(const Medium& medium, const dmat4& worldFromMedium, const RaySegment& segment);
+[[nodiscard]] dvec3 opticalDepth(const Medium& medium, const dmat4& worldFromMedium,
+                                 const RaySegment& segment);
 
 /// ∫ of the grid's field over the segment: cell by cell, because along a line inside one cell the trilinear field is a
 /// cubic, for which Simpson's rule on three samples is exact.
-[[nodiscard]] double integrateGrid(const BrickGrid& grid, const dmat4& worldFromIndex, const RaySegment& segment);
+[[nodiscard]] double integrateGrid(const BrickGrid& grid, const dmat4& worldFromIndex,
+                                   const RaySegment& segment);
 
 } // namespace tyndall

@@ -12,13 +12,20 @@ namespace {
 
 int floorDivide(int a, int b) { return a >= 0 ? a / b : -((b - 1 - a) / b); }
 
-ivec3 floorDivide(ivec3 a, int b) { return {floorDivide(a.x, b), floorDivide(a.y, b), floorDivide(a.z, b)}; }
+ivec3 floorDivide(ivec3 a, int b) {
+    return {floorDivide(a.x, b), floorDivide(a.y, b), floorDivide(a.z, b)};
+}
 
 Result<void> checkPlace(ivec3 origin, int size) {
     for (int axis = 0; axis < 3; ++axis) {
-        if (origin[axis] % size != 0) return Error{fmt::format("a block of {0}³ voxels begins at {1}, which is no multiple of {0}", size, origin[axis])};
+        if (origin[axis] % size != 0)
+            return Error{
+                fmt::format("a block of {0}³ voxels begins at {1}, which is no multiple of {0}",
+                            size, origin[axis])};
         if (origin[axis] < -kMaximumIndex || origin[axis] > kMaximumIndex - size)
-            return Error{fmt::format("voxels lie at index {}, farther out than the {} that can be used", origin[axis], kMaximumIndex)};
+            return Error{
+                fmt::format("voxels lie at index {}, farther out than the {} that can be used",
+                            origin[axis], kMaximumIndex)};
     }
     return {};
 }
@@ -72,22 +79,26 @@ Result<void> SparseVoxels::addBlock(ivec3 origin, const float* values) {
     }
     const ivec3 block = floorDivide(origin, kBlockSize);
     if (!blocks_.emplace(Key{block.x, block.y, block.z}, uint32_t(origins_.size())).second)
-        return Error{fmt::format("the block at ({}, {}, {}) is given twice", origin.x, origin.y, origin.z)};
+        return Error{
+            fmt::format("the block at ({}, {}, {}) is given twice", origin.x, origin.y, origin.z)};
     origins_.push_back(origin);
     if (values_.size() * sizeof(float) > limits_.sampleBytes)
-        return Error{fmt::format("its voxels take more than the {} MiB allowed", limits_.sampleBytes >> 20)};
+        return Error{
+            fmt::format("its voxels take more than the {} MiB allowed", limits_.sampleBytes >> 20)};
     return {};
 }
 
 Result<void> SparseVoxels::addTile(ivec3 origin, int size, float value) {
     if (size < kBlockSize || size > kMaximumIndex || !std::has_single_bit(unsigned(size)))
-        return Error{fmt::format("a tile has an edge of {} voxels; powers of two from 8 on are possible", size)};
+        return Error{fmt::format(
+            "a tile has an edge of {} voxels; powers of two from 8 on are possible", size)};
     if (const Result<void> place = checkPlace(origin, size); !place) return place.error();
     const float usable = repaired(value, uint64_t(size) * uint64_t(size) * uint64_t(size));
     if (usable == 0) return {};
     const ivec3 key = floorDivide(origin, size);
     if (!tilesBySize_[size].emplace(Key{key.x, key.y, key.z}, usable).second)
-        return Error{fmt::format("the tile at ({}, {}, {}) is given twice", origin.x, origin.y, origin.z)};
+        return Error{
+            fmt::format("the tile at ({}, {}, {}) is given twice", origin.x, origin.y, origin.z)};
     tiles_.push_back({origin, size, usable});
     includeVoxels(origin, origin + size - 1);
     return {};
@@ -98,7 +109,8 @@ SparseVoxels::View SparseVoxels::viewBlock(ivec3 block) const {
         return {values_.data() + size_t(found->second) * kBlockVoxels, 0};
     for (const auto& [size, tiles] : tilesBySize_) {
         const ivec3 key = floorDivide(block, size / kBlockSize);
-        if (const auto found = tiles.find({key.x, key.y, key.z}); found != tiles.end()) return {nullptr, found->second};
+        if (const auto found = tiles.find({key.x, key.y, key.z}); found != tiles.end())
+            return {nullptr, found->second};
     }
     return {nullptr, 0};
 }
@@ -117,18 +129,23 @@ void SparseVoxels::gather(ivec3 firstSample, float* samples) const {
             for (int x = 0; x < kBrickSamples; ++x) {
                 const ivec3 p = offset + ivec3(x, y, z);
                 const View& view = views[p.z >> 3][p.y >> 3][p.x >> 3];
-                *samples++ = view.values ? view.values[(p.z & 7) * 64 + (p.y & 7) * 8 + (p.x & 7)] : view.constant;
+                *samples++ = view.values ? view.values[(p.z & 7) * 64 + (p.y & 7) * 8 + (p.x & 7)]
+                                         : view.constant;
             }
 }
 
-void SparseVoxels::markBricks(const BrickGrid& grid, ivec3 lowest, ivec3 highest, std::vector<uint8_t>& touched) const {
+void SparseVoxels::markBricks(const BrickGrid& grid, ivec3 lowest, ivec3 highest,
+                              std::vector<uint8_t>& touched) const {
     // Brick b holds the samples origin + 8b + [0,8]: a voxel on a shared face belongs to both.
     const ivec3 low = glm::max(floorDivide(lowest - grid.origin - 1, kBrickCells), ivec3(0));
-    const ivec3 high = glm::min(floorDivide(highest - grid.origin, kBrickCells), grid.brickCount - 1);
+    const ivec3 high =
+        glm::min(floorDivide(highest - grid.origin, kBrickCells), grid.brickCount - 1);
     for (int z = low.z; z <= high.z; ++z)
         for (int y = low.y; y <= high.y; ++y)
             for (int x = low.x; x <= high.x; ++x)
-                touched[(size_t(z) * size_t(grid.brickCount.y) + size_t(y)) * size_t(grid.brickCount.x) + size_t(x)] = 1;
+                touched[(size_t(z) * size_t(grid.brickCount.y) + size_t(y)) *
+                            size_t(grid.brickCount.x) +
+                        size_t(x)] = 1;
 }
 
 void SparseVoxels::placeTiles(BrickGrid& grid, std::vector<uint8_t>& touched) const {
@@ -136,12 +153,16 @@ void SparseVoxels::placeTiles(BrickGrid& grid, std::vector<uint8_t>& touched) co
         const ivec3 last = tile.origin + tile.size - 1;
         markBricks(grid, tile.origin, last, touched);
         // Bricks whose nine samples an axis all lie in the tile are constant; nothing is gathered for them.
-        const ivec3 low = glm::max(floorDivide(tile.origin - grid.origin + kBrickCells - 1, kBrickCells), ivec3(0));
-        const ivec3 high = glm::min(floorDivide(last - grid.origin - kBrickCells, kBrickCells), grid.brickCount - 1);
+        const ivec3 low = glm::max(
+            floorDivide(tile.origin - grid.origin + kBrickCells - 1, kBrickCells), ivec3(0));
+        const ivec3 high = glm::min(floorDivide(last - grid.origin - kBrickCells, kBrickCells),
+                                    grid.brickCount - 1);
         for (int z = low.z; z <= high.z; ++z)
             for (int y = low.y; y <= high.y; ++y)
                 for (int x = low.x; x <= high.x; ++x) {
-                    const size_t i = (size_t(z) * size_t(grid.brickCount.y) + size_t(y)) * size_t(grid.brickCount.x) + size_t(x);
+                    const size_t i = (size_t(z) * size_t(grid.brickCount.y) + size_t(y)) *
+                                         size_t(grid.brickCount.x) +
+                                     size_t(x);
                     grid.bricks[i] = {tile.value, tile.value, Brick::kNoSlot};
                     touched[i] = 0;
                 }
@@ -158,8 +179,9 @@ Result<BrickGrid> SparseVoxels::build(const dmat4& worldFromIndex) const {
     const uint64_t count = uint64_t(grid.brickCount.x) * uint64_t(grid.brickCount.y); // < 2^54
     if (count > limits_.brickCount || count * uint64_t(grid.brickCount.z) > limits_.brickCount) {
         const ivec3 size = highest_ - lowest_ + 1;
-        return Error{fmt::format("its voxels lie in a box of {}×{}×{}, which takes more than the {} bricks of 8³ allowed", size.x, size.y,
-                                 size.z, limits_.brickCount)};
+        return Error{fmt::format(
+            "its voxels lie in a box of {}×{}×{}, which takes more than the {} bricks of 8³ allowed",
+            size.x, size.y, size.z, limits_.brickCount)};
     }
     grid.bricks.resize(size_t(count) * size_t(grid.brickCount.z));
     std::vector<uint8_t> touched(grid.bricks.size(), 0);
@@ -174,12 +196,14 @@ Result<BrickGrid> SparseVoxels::build(const dmat4& worldFromIndex) const {
                 if (!touched[i]) continue;
                 gather(grid.origin + kBrickCells * ivec3(x, y, z), samples);
                 Brick& brick = grid.bricks[i];
-                const auto [minimum, maximum] = std::minmax_element(std::begin(samples), std::end(samples));
+                const auto [minimum, maximum] =
+                    std::minmax_element(std::begin(samples), std::end(samples));
                 brick.minimum = *minimum;
                 brick.maximum = *maximum;
                 if (brick.minimum == brick.maximum) continue;
                 if ((grid.samples.size() + kBrickSampleCount) * sizeof(float) > limits_.sampleBytes)
-                    return Error{fmt::format("its bricks take more than the {} MiB allowed", limits_.sampleBytes >> 20)};
+                    return Error{fmt::format("its bricks take more than the {} MiB allowed",
+                                             limits_.sampleBytes >> 20)};
                 brick.slot = grid.slotCount();
                 grid.samples.insert(grid.samples.end(), std::begin(samples), std::end(samples));
             }

@@ -18,7 +18,9 @@ inline constexpr int kBlockVoxels = kBlockSize * kBlockSize * kBlockSize;
 inline constexpr int kMaximumIndex = 1 << 28;
 
 /// Origin of the block that holds the voxel: multiples of 8, rounded towards -∞.
-[[nodiscard]] inline ivec3 blockOriginOf(ivec3 voxel) { return {voxel.x & ~7, voxel.y & ~7, voxel.z & ~7}; }
+[[nodiscard]] inline ivec3 blockOriginOf(ivec3 voxel) {
+    return {voxel.x & ~7, voxel.y & ~7, voxel.z & ~7};
+}
 
 /// How many voxels were not a density, and were changed: a tile counts as all of its voxels.
 struct VoxelRepairs {
@@ -56,7 +58,7 @@ private:
         int size;
         float value;
     };
-    struct View { // one block as build() sees it
+    struct View {            // one block as build() sees it
         const float* values; // null: constant
         float constant;
     };
@@ -64,17 +66,18 @@ private:
     void includeVoxels(ivec3 lowest, ivec3 highest);
     [[nodiscard]] View viewBlock(ivec3 block) const; // in units of blocks
     void gather(ivec3 firstSample, float* samples) const;
-    void markBricks(const BrickGrid& grid, ivec3 lowest, ivec3 highest, std::vector<uint8_t>& touched) const;
+    void markBricks(const BrickGrid& grid, ivec3 lowest, ivec3 highest,
+                    std::vector<uint8_t>& touched) const;
     void placeTiles(BrickGrid& grid, std::vector<uint8_t>& touched) const;
 
     GridLimits limits_;
     VoxelRepairs repairs_;
     std::vector<float> values_; // block after block
     std::vector<ivec3> origins_;
-    std::unordered_map<Key, uint32_t, KeyHash> blocks_;              // by origin/8
+    std::unordered_map<Key, uint32_t, KeyHash> blocks_; // by origin/8
     std::vector<Tile> tiles_;
     std::unordered_map<int, std::unordered_map<Key, float, KeyHash>> tilesBySize_; // by origin/size
-    ivec3 lowest_{kMaximumIndex + 1}, highest_{-kMaximumIndex - 1};  // of the voxels that are not 0
+    ivec3 lowest_{kMaximumIndex + 1}, highest_{-kMaximumIndex - 1}; // of the voxels that are not 0
 };
 
 } // namespace tyndall

@@ -17,15 +17,15 @@ inline constexpr uint32_t kAbiVersion = 1;
 
 /// One technique that a plugin offers: the name that `--gi` takes, and the terms that it computes.
 struct TechniqueInfo {
-    const char* name;       // "octaves"
-    const char* title;      // "Octaves of multiple scattering"
-    const char* help;       // one sentence
-    TermSet claims;         // what it can compute; the frame's plan gives it all or some
+    const char* name;  // "octaves"
+    const char* title; // "Octaves of multiple scattering"
+    const char* help;  // one sentence
+    TermSet claims;    // what it can compute; the frame's plan gives it all or some
 };
 
 struct PluginInfo {
-    const char* name;       // "volumetric_gi"
-    const char* version;    // "0.1.0"
+    const char* name;    // "volumetric_gi"
+    const char* version; // "0.1.0"
     const char* help;
     const TechniqueInfo* techniques;
     uint32_t techniqueCount;
@@ -56,13 +56,15 @@ struct FrameInputs {
     LightResources lights;
     MediaResources media;
     SceneChange scene;
-    TermSet terms;            // that the plan gives to this plugin
+    TermSet terms; // that the plan gives to this plugin
 };
 
 /// Null handles: not produced. All view-sized.
 struct FrameOutputs {
-    fg::TextureHandle inScatter;         // RGBA32F nits reaching the eye from media, for the granted terms in media
-    fg::TextureHandle surfaceRadiance;   // RGBA32F nits leaving surfaces towards the eye (before media), for the granted terms on surfaces
+    fg::TextureHandle
+        inScatter; // RGBA32F nits reaching the eye from media, for the granted terms in media
+    fg::TextureHandle
+        surfaceRadiance; // RGBA32F nits leaving surfaces towards the eye (before media), for the granted terms on surfaces
 };
 
 class Plugin {
@@ -70,16 +72,19 @@ public:
     virtual const PluginInfo& info() const = 0;
     /// The plugin's settings; the values live as long as the plugin. The table's keys start with the technique's name.
     virtual uint32_t settingsGroupCount() const = 0;
-    virtual void settingsGroup(uint32_t index, const SettingDesc** fields, uint32_t* count, void** values) = 0;
+    virtual void settingsGroup(uint32_t index, const SettingDesc** fields, uint32_t* count,
+                               void** values) = 0;
     virtual void presets(const PresetEntry** entries, uint32_t* count) const = 0;
     /// Once, before the first frame. Returns false and writes a sentence into `message` if it cannot run here:
     /// the renderer then goes on without it.
     virtual bool setup(Host& host, char* message, uint32_t messageBytes) = 0;
     virtual void sceneChanged(const SceneChange& change) = 0;
     /// Adds this frame's passes for `technique` (an index into info().techniques).
-    virtual FrameOutputs addPasses(fg::FrameGraph& graph, uint32_t technique, const FrameInputs& inputs) = 0;
+    virtual FrameOutputs addPasses(fg::FrameGraph& graph, uint32_t technique,
+                                   const FrameInputs& inputs) = 0;
     /// Adds passes that change the finished linear picture (`color`, view-sized RGBA32F nits); returns the new one, or `color`.
-    virtual fg::TextureHandle addPostPasses(fg::FrameGraph& graph, const FrameInputs& inputs, fg::TextureHandle color) = 0;
+    virtual fg::TextureHandle addPostPasses(fg::FrameGraph& graph, const FrameInputs& inputs,
+                                            fg::TextureHandle color) = 0;
     /// Frees the plugin with the allocator that made it.
     virtual void destroy() = 0;
 
@@ -89,8 +94,8 @@ protected:
 
 /// Returned by the entry point. The first two fields never change place.
 struct PluginDescriptor {
-    uint32_t structSize;  // sizeof(PluginDescriptor)
-    uint32_t abiVersion;  // kAbiVersion
+    uint32_t structSize; // sizeof(PluginDescriptor)
+    uint32_t abiVersion; // kAbiVersion
     const char* name;
     Plugin* (*create)();
 };
@@ -107,14 +112,16 @@ inline constexpr const char* kEntryPointName = "tyndall_plugin";
     extern "C" __attribute__((visibility("default"))) const ::tyndall::plugin::PluginDescriptor*   \
     tyndall_plugin() {                                                                             \
         static constexpr ::tyndall::plugin::PluginDescriptor descriptor{                           \
-            sizeof(::tyndall::plugin::PluginDescriptor), ::tyndall::plugin::kAbiVersion, #NAME, CREATE}; \
+            sizeof(::tyndall::plugin::PluginDescriptor), ::tyndall::plugin::kAbiVersion, #NAME,    \
+            CREATE};                                                                               \
         return &descriptor;                                                                        \
     }
 #else
 #define TYNDALL_PLUGIN(NAME, CREATE)                                                               \
     extern "C" const ::tyndall::plugin::PluginDescriptor* tyndall_plugin_##NAME() {                \
         static constexpr ::tyndall::plugin::PluginDescriptor descriptor{                           \
-            sizeof(::tyndall::plugin::PluginDescriptor), ::tyndall::plugin::kAbiVersion, #NAME, CREATE}; \
+            sizeof(::tyndall::plugin::PluginDescriptor), ::tyndall::plugin::kAbiVersion, #NAME,    \
+            CREATE};                                                                               \
         return &descriptor;                                                                        \
     }
 #endif

@@ -18,8 +18,8 @@ namespace tyndall::plugin {
 /// A technique as the registry found it, and who computes it.
 struct RegisteredTechnique {
     Technique technique;
-    size_t plugin;         // index into PluginRegistry::plugins()
-    uint32_t index;        // in the plugin's own list
+    size_t plugin;  // index into PluginRegistry::plugins()
+    uint32_t index; // in the plugin's own list
 };
 
 class PluginRegistry {
@@ -48,10 +48,11 @@ private:
         Plugin* instance = nullptr;
         void* library = nullptr; // dlopen handle; null for a built-in one
         std::string name;
-        std::string origin;      // "built in" or the file
+        std::string origin; // "built in" or the file
     };
     static void unload(Loaded& loaded);
-    Result<void> adopt(const PluginDescriptor* descriptor, void* library, const std::string& origin);
+    Result<void> adopt(const PluginDescriptor* descriptor, void* library,
+                       const std::string& origin);
 
     std::vector<Loaded> plugins_;
     std::vector<RegisteredTechnique> techniques_;

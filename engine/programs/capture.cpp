@@ -29,7 +29,8 @@ constexpr const char* kExamples =
 /// One run of the command: renders, writes, and keeps what the report needs.
 class Capture {
 public:
-    Capture(const CaptureOptions& options, ProgressStyle progress) : options_(options), progressStyle_(progress) {}
+    Capture(const CaptureOptions& options, ProgressStyle progress)
+        : options_(options), progressStyle_(progress) {}
     Outcome run();
 
 private:
@@ -52,7 +53,9 @@ private:
 };
 
 Outcome Capture::run() {
-    if (Outcome opened = RenderSession::open(options_.render, progressStyle_, &profiler_, session_); !opened.ok()) return opened;
+    if (Outcome opened = RenderSession::open(options_.render, progressStyle_, &profiler_, session_);
+        !opened.ok())
+        return opened;
     if (Outcome rendered = renderFrames(); !rendered.ok()) return rendered;
     describe();
     report_.glObjectsLeaked = session_->closeRendererAndCountLeaks();
@@ -66,7 +69,9 @@ Outcome Capture::renderFrames() {
     const int limit = options_.frameLimit();
     for (int index = 0; index < limit; ++index) {
         if (Outcome done = renderFrame(index); !done.ok()) return done;
-        if (interrupted()) return failed(fmt::format("interrupted after {} of {} frames; '{}' was not written", index + 1, limit, options_.output));
+        if (interrupted())
+            return failed(fmt::format("interrupted after {} of {} frames; '{}' was not written",
+                                      index + 1, limit, options_.output));
         const bool last = index + 1 == limit || (options_.converge && result_.converged);
         if (options_.writesSequence() || last)
             if (Outcome written = writeFrame(index); !written.ok()) return written;
@@ -74,7 +79,9 @@ Outcome Capture::renderFrames() {
         progress.update(double(index + 1) / limit);
     }
     if (options_.converge && !result_.converged && options_.frames == 0)
-        log::warning(fmt::format("not converged after {} frames: the error of the average is estimated at relmse {:.2g}", limit, result_.estimatedError));
+        log::warning(fmt::format(
+            "not converged after {} frames: the error of the average is estimated at relmse {:.2g}",
+            limit, result_.estimatedError));
     return {};
 }
 
@@ -83,11 +90,13 @@ Outcome Capture::renderFrame(int index) {
     request.frameIndex = uint32_t(index);
     request.converge = options_.converge;
     request.separateTerms = options_.hasAov("terms");
-    if (!options_.converge) request.time += index * options_.timeStep; // a scene that converges stands still
+    if (!options_.converge)
+        request.time += index * options_.timeStep; // a scene that converges stands still
     CaptureReport::Frame& frame = report_.frames.emplace_back();
     frame.startMicroseconds = processMicroseconds();
     Result<FrameResult> result = session_->renderer().renderFrame(request);
-    if (!result.ok()) return failed(result.message()); // the command line and the scene were checked before
+    if (!result.ok())
+        return failed(result.message()); // the command line and the scene were checked before
     gl::Fence::insert().wait();
     frame.durationMicroseconds = processMicroseconds() - frame.startMicroseconds;
     result_ = std::move(*result);
@@ -109,7 +118,8 @@ Outcome Capture::writeFrame(int index) {
     if (options_.wantsExr())
         written = writeExrFrame(path, std::move(beauty));
     else
-        written = outcomeOf(writePng(path, beauty.width, beauty.height, 3, renderer.readDisplay()), ExitStatus::Failed);
+        written = outcomeOf(writePng(path, beauty.width, beauty.height, 3, renderer.readDisplay()),
+                            ExitStatus::Failed);
     if (written.ok()) log::info("wrote " + path);
     return written;
 }
@@ -130,12 +140,15 @@ Outcome Capture::writeExrFrame(const std::string& path, Image beauty) {
         if (!image.ok()) return wrongInput("--aov: " + image.message());
         layers.push_back({aov, std::move(*image)});
     }
-    return outcomeOf(writeExr(path, layers, metadata(), options_.half ? ExrDepth::Half : ExrDepth::Float), ExitStatus::Failed);
+    return outcomeOf(
+        writeExr(path, layers, metadata(), options_.half ? ExrDepth::Half : ExrDepth::Float),
+        ExitStatus::Failed);
 }
 
 ImageMetadata Capture::metadata() const {
     std::string settings;
-    for (const std::string& assignment : session_->renderer().settings().differences()) settings += (settings.empty() ? "" : " ") + assignment;
+    for (const std::string& assignment : session_->renderer().settings().differences())
+        settings += (settings.empty() ? "" : " ") + assignment;
     return {{"tyndall.scene", options_.render.scene},
             {"tyndall.size", options_.render.size},
             {"tyndall.version", TYNDALL_VERSION},
@@ -174,21 +187,27 @@ void Capture::describe() {
 Outcome Capture::writeReports() {
     report_.peakResidentBytes = peakResidentBytes();
     if (!options_.report.empty())
-        if (Result<void> written = writeFileAtomically(options_.report, report_.toJson()); !written.ok()) return failed(written.message());
+        if (Result<void> written = writeFileAtomically(options_.report, report_.toJson());
+            !written.ok())
+            return failed(written.message());
     if (!options_.trace.empty()) {
         Trace trace;
         trace.addProfile(profiler_);
         report_.addPassesTo(trace);
-        if (Result<void> written = writeFileAtomically(options_.trace, trace.toJson()); !written.ok()) return failed(written.message());
+        if (Result<void> written = writeFileAtomically(options_.trace, trace.toJson());
+            !written.ok())
+            return failed(written.message());
     }
     return {};
 }
 
 Outcome Capture::checkThresholds() const {
     if (options_.failOnNonFinite && report_.nonFinite > 0)
-        return failed(fmt::format("--fail-on-nonfinite: {} values of the picture are not finite", report_.nonFinite));
+        return failed(fmt::format("--fail-on-nonfinite: {} values of the picture are not finite",
+                                  report_.nonFinite));
     if (options_.maxMs > 0 && report_.medianMs() > options_.maxMs)
-        return failed(fmt::format("--max-ms {}: the median frame took {:.1f} ms", options_.maxMs, report_.medianMs()));
+        return failed(fmt::format("--max-ms {}: the median frame took {:.1f} ms", options_.maxMs,
+                                  report_.medianMs()));
     return {};
 }
 
@@ -201,7 +220,8 @@ void addCaptureCommand(CLI::App& program, Run& run) {
     command->footer(kExamples);
     command->callback([options, &run] {
         run = [options](const GlobalOptions& global) {
-            if (const Result<void> checked = checkCaptureOptions(*options); !checked.ok()) return wrongInput(checked.message());
+            if (const Result<void> checked = checkCaptureOptions(*options); !checked.ok())
+                return wrongInput(checked.message());
             return Capture(*options, global.progress()).run();
         };
     });

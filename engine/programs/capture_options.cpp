@@ -11,7 +11,8 @@ namespace tyndall {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr std::array<std::string_view, 5> kAovs = {"depth", "normal", "albedo", "transmittance", "terms"};
+constexpr std::array<std::string_view, 5> kAovs = {"depth", "normal", "albedo", "transmittance",
+                                                   "terms"};
 constexpr int kConvergeLimit = 4096; // frames, where --frames does not say otherwise
 
 /// `%d` or `%04d`: where it stands in the text, and its width.
@@ -22,7 +23,8 @@ struct FrameNumber {
 FrameNumber findFrameNumber(const std::string& text) {
     for (size_t at = text.find('%'); at != std::string::npos; at = text.find('%', at + 1)) {
         size_t end = at + 1, width = 0;
-        while (end < text.size() && text[end] >= '0' && text[end] <= '9' && width < 100) width = width * 10 + size_t(text[end++] - '0');
+        while (end < text.size() && text[end] >= '0' && text[end] <= '9' && width < 100)
+            width = width * 10 + size_t(text[end++] - '0');
         if (end < text.size() && text[end] == 'd' && width <= 12) return {at, end + 1 - at, width};
     }
     return {};
@@ -33,7 +35,8 @@ Result<void> checkFolder(const char* option, const std::string& file) {
     const fs::path folder = fs::path(file).parent_path();
     std::error_code error;
     if (!folder.empty() && !fs::is_directory(folder, error))
-        return Error{fmt::format("{} {}: there is no folder '{}'; make it first", option, file, folder.string())};
+        return Error{fmt::format("{} {}: there is no folder '{}'; make it first", option, file,
+                                 folder.string())};
     return {};
 }
 
@@ -41,29 +44,53 @@ Result<void> checkFolder(const char* option, const std::string& file) {
 
 bool CaptureOptions::wantsExr() const { return output.ends_with(".exr"); }
 bool CaptureOptions::writesSequence() const { return findFrameNumber(output).length > 0; }
-bool CaptureOptions::hasAov(std::string_view name) const { return std::find(aovs.begin(), aovs.end(), name) != aovs.end(); }
-int CaptureOptions::frameLimit() const { return frames > 0 ? frames : converge ? kConvergeLimit : 1; }
+bool CaptureOptions::hasAov(std::string_view name) const {
+    return std::find(aovs.begin(), aovs.end(), name) != aovs.end();
+}
+int CaptureOptions::frameLimit() const {
+    return frames > 0 ? frames : converge ? kConvergeLimit : 1;
+}
 
 std::string CaptureOptions::outputOfFrame(int frame) const {
     const FrameNumber number = findFrameNumber(output);
     if (number.length == 0) return output;
-    return fmt::format("{}{:0{}}{}", output.substr(0, number.at), frame, number.width, output.substr(number.at + number.length));
+    return fmt::format("{}{:0{}}{}", output.substr(0, number.at), frame, number.width,
+                       output.substr(number.at + number.length));
 }
 
 void addCaptureOptions(CLI::App& command, CaptureOptions& options) {
     addRenderOptions(command, options.render);
-    command.add_option("-o,--output", options.output, "The picture: .exr (linear) or .png (exposed, tone-mapped)")->type_name("OUT")->required();
-    command.add_option("--frames", options.frames, "Frames to render; the last is written, or each with %04d in OUT (1)")
-        ->type_name("N")->check(CLI::Range(1, 1000000));
-    command.add_option("--time-step", options.timeStep, "Seconds from frame to frame (1/60)")->type_name("SECONDS");
-    command.add_flag("--converge", options.converge, "Average frames of the still scene until the noise is gone; --frames caps it");
-    command.add_option("--aov", options.aovs, "More layers for an EXR, comma-separated: depth, normal, albedo, transmittance, terms")
-        ->type_name("LIST")->delimiter(',')->allow_extra_args(false);
+    command
+        .add_option("-o,--output", options.output,
+                    "The picture: .exr (linear) or .png (exposed, tone-mapped)")
+        ->type_name("OUT")
+        ->required();
+    command
+        .add_option("--frames", options.frames,
+                    "Frames to render; the last is written, or each with %04d in OUT (1)")
+        ->type_name("N")
+        ->check(CLI::Range(1, 1000000));
+    command.add_option("--time-step", options.timeStep, "Seconds from frame to frame (1/60)")
+        ->type_name("SECONDS");
+    command.add_flag("--converge", options.converge,
+                     "Average frames of the still scene until the noise is gone; --frames caps it");
+    command
+        .add_option(
+            "--aov", options.aovs,
+            "More layers for an EXR, comma-separated: depth, normal, albedo, transmittance, terms")
+        ->type_name("LIST")
+        ->delimiter(',')
+        ->allow_extra_args(false);
     command.add_flag("--half", options.half, "Write the EXR in 16-bit instead of 32-bit floats");
-    command.add_option("--report", options.report, "Write what it took and what was done as JSON")->type_name("FILE.json");
-    command.add_option("--trace", options.trace, "Write Chrome trace events, for ui.perfetto.dev")->type_name("FILE.json");
-    command.add_option("--max-ms", options.maxMs, "Fail when the median frame takes longer")->type_name("X")->check(CLI::PositiveNumber);
-    command.add_flag("--fail-on-nonfinite", options.failOnNonFinite, "Fail when a pixel is not finite");
+    command.add_option("--report", options.report, "Write what it took and what was done as JSON")
+        ->type_name("FILE.json");
+    command.add_option("--trace", options.trace, "Write Chrome trace events, for ui.perfetto.dev")
+        ->type_name("FILE.json");
+    command.add_option("--max-ms", options.maxMs, "Fail when the median frame takes longer")
+        ->type_name("X")
+        ->check(CLI::PositiveNumber);
+    command.add_flag("--fail-on-nonfinite", options.failOnNonFinite,
+                     "Fail when a pixel is not finite");
 }
 
 Result<void> checkCaptureOptions(const CaptureOptions& options) {
@@ -71,13 +98,21 @@ Result<void> checkCaptureOptions(const CaptureOptions& options) {
         return Error{fmt::format("-o {}: the name must end in .exr or .png", options.output)};
     for (const std::string& aov : options.aovs) {
         if (std::find(kAovs.begin(), kAovs.end(), aov) == kAovs.end())
-            return Error{fmt::format("--aov {}: it takes depth, normal, albedo, transmittance and terms", aov)};
+            return Error{fmt::format(
+                "--aov {}: it takes depth, normal, albedo, transmittance and terms", aov)};
     }
-    if (!options.aovs.empty() && !options.wantsExr()) return Error{fmt::format("--aov: a PNG has no layers; let -o end in .exr instead of '{}'", options.output)};
-    if (options.half && !options.wantsExr()) return Error{"--half: a PNG has 8 bits a channel; let -o end in .exr"};
+    if (!options.aovs.empty() && !options.wantsExr())
+        return Error{fmt::format("--aov: a PNG has no layers; let -o end in .exr instead of '{}'",
+                                 options.output)};
+    if (options.half && !options.wantsExr())
+        return Error{"--half: a PNG has 8 bits a channel; let -o end in .exr"};
     if (options.converge && options.writesSequence())
-        return Error{fmt::format("--converge: it averages frames of a still scene into one picture; '{}' asks for one file a frame", options.output)};
-    for (const auto& [option, file] : {std::pair("-o", &options.output), std::pair("--report", &options.report), std::pair("--trace", &options.trace)})
+        return Error{fmt::format(
+            "--converge: it averages frames of a still scene into one picture; '{}' asks for one file a frame",
+            options.output)};
+    for (const auto& [option, file] :
+         {std::pair("-o", &options.output), std::pair("--report", &options.report),
+          std::pair("--trace", &options.trace)})
         if (Result<void> folder = checkFolder(option, *file); !folder.ok()) return folder;
     return {};
 }

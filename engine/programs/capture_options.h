@@ -14,10 +14,10 @@ struct CaptureOptions {
     RenderOptions render;
     std::string output, report, trace;
     std::vector<std::string> aovs;
-    int frames = 0;       // 0: not given
+    int frames = 0;             // 0: not given
     double timeStep = 1.0 / 60; // seconds
     bool converge = false, half = false, failOnNonFinite = false;
-    double maxMs = 0;     // 0: no threshold
+    double maxMs = 0; // 0: no threshold
 
     [[nodiscard]] bool wantsExr() const;
     /// `%04d` in the output: every frame is written.

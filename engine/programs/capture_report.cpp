@@ -8,12 +8,16 @@
 namespace tyndall {
 namespace {
 
-std::optional<double> measured(double milliseconds) { return milliseconds < 0 ? std::nullopt : std::optional(milliseconds); }
+std::optional<double> measured(double milliseconds) {
+    return milliseconds < 0 ? std::nullopt : std::optional(milliseconds);
+}
 
 void writeOptional(JsonWriter& json, std::string_view key, const std::optional<double>& value) {
     json.key(key);
-    if (value) json.value(*value);
-    else json.null();
+    if (value)
+        json.value(*value);
+    else
+        json.null();
 }
 
 void writeTerms(JsonWriter& json, std::string_view key, TermSet set) {
@@ -47,13 +51,16 @@ void CaptureReport::setPlan(const FramePlan& plan) {
 void CaptureReport::setPasses(const fg::FrameReport& report) {
     passes.clear();
     for (const fg::PassReport& pass : report.passes)
-        passes.push_back({std::string(pass.name), fg::statusName(pass.status), std::string(pass.reason), measured(pass.gpuMs), measured(pass.savedMs), pass.cpuMs});
+        passes.push_back({std::string(pass.name), fg::statusName(pass.status),
+                          std::string(pass.reason), measured(pass.gpuMs), measured(pass.savedMs),
+                          pass.cpuMs});
     gpuBytes = report.gpuBytes;
 }
 
 double CaptureReport::quantileMs(double quantile) const {
     std::vector<double> sorted;
-    for (size_t i = frames.size() > 1 ? 1 : 0; i < frames.size(); ++i) sorted.push_back(frames[i].durationMicroseconds / 1000);
+    for (size_t i = frames.size() > 1 ? 1 : 0; i < frames.size(); ++i)
+        sorted.push_back(frames[i].durationMicroseconds / 1000);
     if (sorted.empty()) return 0;
     std::sort(sorted.begin(), sorted.end());
     // Linear between the two nearest ranks.
@@ -68,18 +75,43 @@ double CaptureReport::percentile95Ms() const { return quantileMs(0.95); }
 
 std::string CaptureReport::toJson() const {
     JsonWriter json;
-    json.beginObject().member("scene", scene).key("size").compact().beginArray().value(width).value(height).endArray();
-    json.member("frames", frames.size()).member("backend", backend).key("gl").compact().beginObject();
-    json.member("vendor", glVendor).member("renderer", glRenderer).member("version", glVersion).endObject();
+    json.beginObject()
+        .member("scene", scene)
+        .key("size")
+        .compact()
+        .beginArray()
+        .value(width)
+        .value(height)
+        .endArray();
+    json.member("frames", frames.size())
+        .member("backend", backend)
+        .key("gl")
+        .compact()
+        .beginObject();
+    json.member("vendor", glVendor)
+        .member("renderer", glRenderer)
+        .member("version", glVersion)
+        .endObject();
     json.member("technique", technique).member("why", why);
     writeTerms(json, "claims", claims);
     writeTerms(json, "missing", missing);
     json.key("passes").beginArray();
     for (const Pass& pass : passes) writePass(json, pass);
     json.endArray();
-    json.key("frame_ms").compact().beginObject().member("median", medianMs()).member("p95", percentile95Ms()).endObject();
-    json.member("startup_ms", startupMs).member("gpu_bytes", gpuBytes).member("peak_rss_bytes", peakResidentBytes);
-    json.key("counters").compact().beginObject().member("nonfinite", nonFinite).member("negative", negative);
+    json.key("frame_ms")
+        .compact()
+        .beginObject()
+        .member("median", medianMs())
+        .member("p95", percentile95Ms())
+        .endObject();
+    json.member("startup_ms", startupMs)
+        .member("gpu_bytes", gpuBytes)
+        .member("peak_rss_bytes", peakResidentBytes);
+    json.key("counters")
+        .compact()
+        .beginObject()
+        .member("nonfinite", nonFinite)
+        .member("negative", negative);
     json.member("gl_errors", glErrors).member("gl_objects_leaked", glObjectsLeaked).endObject();
     json.key("iterations").compact().beginObject();
     for (const auto& [name, count] : iterations) json.member(name, count);
@@ -91,13 +123,15 @@ std::string CaptureReport::toJson() const {
 void CaptureReport::addPassesTo(Trace& trace) const {
     const uint32_t frameTrack = trace.addTrack("frames");
     for (size_t i = 0; i < frames.size(); ++i)
-        trace.addSpan(frameTrack, "frame " + std::to_string(i), frames[i].startMicroseconds, frames[i].durationMicroseconds);
+        trace.addSpan(frameTrack, "frame " + std::to_string(i), frames[i].startMicroseconds,
+                      frames[i].durationMicroseconds);
     if (frames.empty()) return;
     const uint32_t gpuTrack = trace.addTrack("GPU passes of the last frame");
     const uint32_t recordTrack = trace.addTrack("CPU recording of the last frame");
     double gpuTime = frames.back().startMicroseconds, cpuTime = gpuTime;
     for (const Pass& pass : passes) {
-        const std::string detail = pass.reason.empty() ? pass.status : pass.status + ": " + pass.reason;
+        const std::string detail =
+            pass.reason.empty() ? pass.status : pass.status + ": " + pass.reason;
         const double gpu = 1000 * pass.gpuMs.value_or(0), cpu = 1000 * pass.cpuMs;
         trace.addSpan(gpuTrack, pass.name, gpuTime, pass.status == "ran" ? gpu : 0, detail);
         gpuTime += pass.status == "ran" ? gpu : 0;

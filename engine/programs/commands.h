@@ -15,7 +15,9 @@ namespace tyndall {
 /// What every subcommand sees of the options before it.
 struct GlobalOptions {
     bool quiet = false;
-    [[nodiscard]] ProgressStyle progress() const { return quiet ? ProgressStyle::Quiet : detectProgressStyle(); }
+    [[nodiscard]] ProgressStyle progress() const {
+        return quiet ? ProgressStyle::Quiet : detectProgressStyle();
+    }
 };
 
 using Run = std::function<Outcome(const GlobalOptions&)>;

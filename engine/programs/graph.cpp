@@ -26,11 +26,17 @@ Outcome runGraph(const GraphOptions& options, const GlobalOptions& global) {
     const Result<fg::DumpFormat> format = fg::parseDumpFormat(options.format);
     if (!format.ok()) return wrongInput("--format: " + format.message());
     std::unique_ptr<RenderSession> session;
-    if (Outcome opened = RenderSession::open(options.render, global.progress(), nullptr, session); !opened.ok()) return opened;
-    if (const Result<FrameResult> frame = session->renderer().renderFrame(session->request()); !frame.ok()) return failed(frame.message());
+    if (Outcome opened = RenderSession::open(options.render, global.progress(), nullptr, session);
+        !opened.ok())
+        return opened;
+    if (const Result<FrameResult> frame = session->renderer().renderFrame(session->request());
+        !frame.ok())
+        return failed(frame.message());
     const std::string text = fg::dump(session->renderer().graph(), *format);
-    if (!options.output.empty()) return outcomeOf(writeFileAtomically(options.output, text), ExitStatus::Failed);
-    if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size() || std::fflush(stdout) != 0) return failed("cannot write to standard output");
+    if (!options.output.empty())
+        return outcomeOf(writeFileAtomically(options.output, text), ExitStatus::Failed);
+    if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size() || std::fflush(stdout) != 0)
+        return failed("cannot write to standard output");
     return {};
 }
 
@@ -38,12 +44,16 @@ Outcome runGraph(const GraphOptions& options, const GlobalOptions& global) {
 
 void addGraphCommand(CLI::App& program, Run& run) {
     auto options = std::make_shared<GraphOptions>();
-    CLI::App* command = program.add_subcommand("graph", "Print the frame graph: passes, resources, barriers, what is skipped and why");
+    CLI::App* command = program.add_subcommand(
+        "graph", "Print the frame graph: passes, resources, barriers, what is skipped and why");
     addRenderOptions(*command, options->render);
     command->add_option("--format", options->format, "text, dot or json (text)")->type_name("NAME");
-    command->add_option("-o,--output", options->output, "A file instead of standard output")->type_name("FILE");
+    command->add_option("-o,--output", options->output, "A file instead of standard output")
+        ->type_name("FILE");
     command->footer(kExamples);
-    command->callback([options, &run] { run = [options](const GlobalOptions& global) { return runGraph(*options, global); }; });
+    command->callback([options, &run] {
+        run = [options](const GlobalOptions& global) { return runGraph(*options, global); };
+    });
 }
 
 } // namespace tyndall

@@ -20,37 +20,48 @@ namespace {
 
 std::string lowerExtension(const fs::path& path) {
     std::string extension = path.extension().string();
-    std::transform(extension.begin(), extension.end(), extension.begin(), [](unsigned char c) { return char(std::tolower(c)); });
+    std::transform(extension.begin(), extension.end(), extension.begin(),
+                   [](unsigned char c) { return char(std::tolower(c)); });
     return extension;
 }
 
-std::string vectorText(const dvec3& v) { return fmt::format("({:.6g}, {:.6g}, {:.6g})", v.x, v.y, v.z); }
+std::string vectorText(const dvec3& v) {
+    return fmt::format("({:.6g}, {:.6g}, {:.6g})", v.x, v.y, v.z);
+}
 
 std::string boundsText(const Bounds& bounds) {
-    return bounds.empty() ? "nothing" : fmt::format("{} to {} m", vectorText(bounds.minimum), vectorText(bounds.maximum));
+    return bounds.empty()
+               ? "nothing"
+               : fmt::format("{} to {} m", vectorText(bounds.minimum), vectorText(bounds.maximum));
 }
 
 // Grids
 
 std::string gridLines(const GridInfo& grid) {
-    std::string text = fmt::format("grid '{}': {}, {}, {} active voxels", grid.name, grid.type, grid.gridClass, grid.activeVoxels);
+    std::string text = fmt::format("grid '{}': {}, {}, {} active voxels", grid.name, grid.type,
+                                   grid.gridClass, grid.activeVoxels);
     if (grid.last.x >= grid.first.x)
-        text += fmt::format(" in ({}, {}, {}) to ({}, {}, {})", grid.first.x, grid.first.y, grid.first.z, grid.last.x, grid.last.y, grid.last.z);
+        text += fmt::format(" in ({}, {}, {}) to ({}, {}, {})", grid.first.x, grid.first.y,
+                            grid.first.z, grid.last.x, grid.last.y, grid.last.z);
     text += '\n';
     if (grid.affine) {
         const dmat4& m = grid.worldFromIndex;
-        const dvec3 edges(glm::length(dvec3(m[0])), glm::length(dvec3(m[1])), glm::length(dvec3(m[2])));
-        text += fmt::format("    voxels of {} m, voxel (0, 0, 0) at {} m\n", vectorText(edges), vectorText(dvec3(m[3])));
+        const dvec3 edges(glm::length(dvec3(m[0])), glm::length(dvec3(m[1])),
+                          glm::length(dvec3(m[2])));
+        text += fmt::format("    voxels of {} m, voxel (0, 0, 0) at {} m\n", vectorText(edges),
+                            vectorText(dvec3(m[3])));
     } else {
         text += "    a frustum transform, which is not rendered\n";
     }
-    return text + (grid.importable ? "    understood: it can be a medium's density or temperature\n" : "    ignored: it cannot be a density\n");
+    return text + (grid.importable ? "    understood: it can be a medium's density or temperature\n"
+                                   : "    ignored: it cannot be a density\n");
 }
 
 Result<std::string> describeGrids(const fs::path& path) {
     const Result<GridFileInfo> info = gridInfo(path);
     if (!info.ok()) return info.error();
-    std::string text = fmt::format("{}: {}, {} grids\n", path.string(), info->format, info->grids.size());
+    std::string text =
+        fmt::format("{}: {}, {} grids\n", path.string(), info->format, info->grids.size());
     for (const GridInfo& grid : info->grids) text += gridLines(grid);
     return text;
 }
@@ -69,15 +80,19 @@ std::string imageLine(const std::string& name, const Image& image) {
         ++finite;
     }
     const ValueCounts counts = countValues(image);
-    return fmt::format("layer '{}': {} channels, {:.6g} to {:.6g}, mean {:.6g}, {} not finite, {} negative\n", name.empty() ? "(main)" : name,
-                       image.channels, finite ? smallest : 0.0f, finite ? largest : 0.0f, finite ? sum / double(finite) : 0.0, counts.nonFinite, counts.negative);
+    return fmt::format(
+        "layer '{}': {} channels, {:.6g} to {:.6g}, mean {:.6g}, {} not finite, {} negative\n",
+        name.empty() ? "(main)" : name, image.channels, finite ? smallest : 0.0f,
+        finite ? largest : 0.0f, finite ? sum / double(finite) : 0.0, counts.nonFinite,
+        counts.negative);
 }
 
 Result<std::string> describeExr(const fs::path& path) {
     const Result<ExrFile> file = readExr(path);
     if (!file.ok()) return file.error();
-    std::string text = fmt::format("{}: OpenEXR, {}x{}, {} layers\n", path.string(), file->layers.front().image.width, file->layers.front().image.height,
-                                   file->layers.size());
+    std::string text = fmt::format("{}: OpenEXR, {}x{}, {} layers\n", path.string(),
+                                   file->layers.front().image.width,
+                                   file->layers.front().image.height, file->layers.size());
     for (const ImageLayer& layer : file->layers) text += imageLine(layer.name, layer.image);
     for (const auto& [key, value] : file->metadata) text += fmt::format("{}: {}\n", key, value);
     return text;
@@ -86,7 +101,8 @@ Result<std::string> describeExr(const fs::path& path) {
 Result<std::string> describeHdr(const fs::path& path) {
     const Result<Image> image = readHdr(path);
     if (!image.ok()) return image.error();
-    return fmt::format("{}: Radiance, {}x{}\n", path.string(), image->width, image->height) + imageLine("", *image);
+    return fmt::format("{}: Radiance, {}x{}\n", path.string(), image->width, image->height) +
+           imageLine("", *image);
 }
 
 // Scenes
@@ -111,7 +127,9 @@ std::string extensionLines(const fs::path& path, const std::vector<std::string>&
     for (const nlohmann::json& name : *used) {
         if (!name.is_string()) continue;
         const auto extension = name.get<std::string>();
-        const bool ignored = std::any_of(notes.begin(), notes.end(), [&](const std::string& note) { return note.find(extension) != std::string::npos; });
+        const bool ignored = std::any_of(notes.begin(), notes.end(), [&](const std::string& note) {
+            return note.find(extension) != std::string::npos;
+        });
         text += fmt::format("extension {}: {}\n", extension, ignored ? "ignored" : "understood");
     }
     return text;
@@ -142,16 +160,26 @@ const char* kindName(LightType type) {
 std::string sceneLines(const Scene& scene) {
     size_t triangles = 0, lines = 0, points = 0;
     for (const Mesh& mesh : scene.meshes) {
-        if (mesh.topology == MeshTopology::Triangles) triangles += mesh.indices.size() / 3;
-        else (mesh.topology == MeshTopology::Lines ? lines : points) += mesh.indices.size() / (mesh.topology == MeshTopology::Lines ? 2 : 1);
+        if (mesh.topology == MeshTopology::Triangles)
+            triangles += mesh.indices.size() / 3;
+        else
+            (mesh.topology == MeshTopology::Lines ? lines : points) +=
+                mesh.indices.size() / (mesh.topology == MeshTopology::Lines ? 2 : 1);
     }
-    std::string text = fmt::format("{} nodes, {} meshes with {} triangles, {} lines and {} points, {} materials, {} textures\n", scene.nodes.size(),
-                                   scene.meshes.size(), triangles, lines, points, scene.materials.size(), scene.textures.size());
+    std::string text = fmt::format(
+        "{} nodes, {} meshes with {} triangles, {} lines and {} points, {} materials, {} textures\n",
+        scene.nodes.size(), scene.meshes.size(), triangles, lines, points, scene.materials.size(),
+        scene.textures.size());
     text += fmt::format("extent: {}\n", boundsText(scene.worldBounds()));
-    for (const Light& light : scene.lights) text += fmt::format("light '{}': {}\n", light.name, kindName(light.type));
-    for (const Medium& medium : scene.media) text += fmt::format("medium '{}': {}{}\n", medium.name, kindName(medium.kind), medium.file.empty() ? "" : " from '" + medium.file + "'");
+    for (const Light& light : scene.lights)
+        text += fmt::format("light '{}': {}\n", light.name, kindName(light.type));
+    for (const Medium& medium : scene.media)
+        text += fmt::format("medium '{}': {}{}\n", medium.name, kindName(medium.kind),
+                            medium.file.empty() ? "" : " from '" + medium.file + "'");
     for (const Camera& camera : scene.cameras)
-        text += fmt::format("camera '{}': {}\n", camera.name, camera.type == CameraType::Perspective ? "perspective" : "orthographic");
+        text +=
+            fmt::format("camera '{}': {}\n", camera.name,
+                        camera.type == CameraType::Perspective ? "perspective" : "orthographic");
     if (scene.environment.image) text += fmt::format("environment: '{}'\n", scene.environment.file);
     for (const std::string& setting : scene.settings) text += fmt::format("setting {}\n", setting);
     return text;
@@ -161,7 +189,8 @@ Result<std::string> describeScene(const fs::path& path, const std::string& exten
     const LoadOptions options{[](float, const std::string&) { return !interrupted(); }};
     const Result<LoadedScene> loaded = loadScene(path, options);
     if (!loaded.ok()) return loaded.error();
-    std::string text = fmt::format("{}: {}\n", path.string(), extension == ".json" ? "a scene file" : "glTF 2.0");
+    std::string text =
+        fmt::format("{}: {}\n", path.string(), extension == ".json" ? "a scene file" : "glTF 2.0");
     text += sceneLines(loaded->scene);
     if (extension == ".gltf" || extension == ".glb") text += extensionLines(path, loaded->notes);
     for (const std::string& supplied : loaded->supplied) text += "supplied: " + supplied + "\n";
@@ -176,8 +205,11 @@ Result<std::string> describeFile(const fs::path& path) {
     if (extension == ".vdb" || extension == ".nvdb") return describeGrids(path);
     if (extension == ".exr") return describeExr(path);
     if (extension == ".hdr") return describeHdr(path);
-    if (extension == ".json" || extension == ".gltf" || extension == ".glb") return describeScene(path, extension);
-    return Error{fmt::format("'{}' is of no kind that is understood: scene files (.json), .gltf, .glb, .vdb, .nvdb, .exr and .hdr are", path.string())};
+    if (extension == ".json" || extension == ".gltf" || extension == ".glb")
+        return describeScene(path, extension);
+    return Error{fmt::format(
+        "'{}' is of no kind that is understood: scene files (.json), .gltf, .glb, .vdb, .nvdb, .exr and .hdr are",
+        path.string())};
 }
 
 } // namespace tyndall

@@ -33,7 +33,8 @@ int finish(const Outcome& outcome) {
 Outcome wrongCommandLine(const CLI::App& program, const CLI::ParseError& error) {
     std::string message = error.what();
     std::replace(message.begin(), message.end(), '\n', ' ');
-    const CLI::App* command = program.get_subcommands().empty() ? &program : program.get_subcommands().front();
+    const CLI::App* command =
+        program.get_subcommands().empty() ? &program : program.get_subcommands().front();
     if (dynamic_cast<const CLI::ExtrasError*>(&error)) {
         const std::vector<std::string> extras = program.remaining(true);
         const std::string word = extras.empty() ? "" : extras.front();
@@ -42,7 +43,8 @@ Outcome wrongCommandLine(const CLI::App& program, const CLI::ParseError& error) 
             for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
         const std::vector<std::string_view> candidates(names.begin(), names.end());
         const std::string nearest = nearestName(word.substr(0, word.find('=')), candidates);
-        message = fmt::format("'{}' is not known here{}", word, nearest.empty() ? "" : ": did you mean '" + nearest + "'?");
+        message = fmt::format("'{}' is not known here{}", word,
+                              nearest.empty() ? "" : ": did you mean '" + nearest + "'?");
     }
     const std::string place = command == &program ? "" : " " + command->get_name();
     return wrongInput(fmt::format("{} ('tyndall{} --help' lists what there is)", message, place));
@@ -51,15 +53,20 @@ Outcome wrongCommandLine(const CLI::App& program, const CLI::ParseError& error) 
 /// A first word that is no option and no command: CLI11 would only say that a command is missing.
 Outcome checkCommandName(const CLI::App& program, std::string_view word) {
     std::vector<std::string> names;
-    for (const CLI::App* command : program.get_subcommands({})) names.push_back(command->get_name());
-    if (word.starts_with("-") || std::find(names.begin(), names.end(), word) != names.end()) return {};
-    const std::string nearest = nearestName(word, std::vector<std::string_view>(names.begin(), names.end()));
+    for (const CLI::App* command : program.get_subcommands({}))
+        names.push_back(command->get_name());
+    if (word.starts_with("-") || std::find(names.begin(), names.end(), word) != names.end())
+        return {};
+    const std::string nearest =
+        nearestName(word, std::vector<std::string_view>(names.begin(), names.end()));
     return wrongInput(fmt::format("'{}' is not a command: {}", word,
-                                  nearest.empty() ? "there are capture, graph and info" : "did you mean '" + nearest + "'?"));
+                                  nearest.empty() ? "there are capture, graph and info"
+                                                  : "did you mean '" + nearest + "'?"));
 }
 
 int run(int argc, char** argv) {
-    CLI::App program("Renders scenes with smoke, fog and clouds in them, without a window.", "tyndall");
+    CLI::App program("Renders scenes with smoke, fog and clouds in them, without a window.",
+                     "tyndall");
     program.set_version_flag("--version", "tyndall " TYNDALL_VERSION);
     program.set_help_flag("-h,--help", "Print this and exit");
     program.require_subcommand(1);
@@ -71,7 +78,8 @@ int run(int argc, char** argv) {
     addCaptureCommand(program, chosen);
     addGraphCommand(program, chosen);
     addInfoCommand(program, chosen);
-    for (CLI::App* place : program.get_subcommands({})) place->add_flag("-q,--quiet", options.quiet, "Say nothing but warnings and errors");
+    for (CLI::App* place : program.get_subcommands({}))
+        place->add_flag("-q,--quiet", options.quiet, "Say nothing but warnings and errors");
     program.add_flag("-q,--quiet", options.quiet, "Say nothing but warnings and errors");
 
     if (argc == 1) {

@@ -22,10 +22,11 @@ struct [[nodiscard]] Outcome {
 };
 
 inline Outcome failed(std::string message) { return {ExitStatus::Failed, std::move(message)}; }
-inline Outcome wrongInput(std::string message) { return {ExitStatus::WrongInput, std::move(message)}; }
+inline Outcome wrongInput(std::string message) {
+    return {ExitStatus::WrongInput, std::move(message)};
+}
 /// What a Result means to a command whose failure has this status.
-template <typename T>
-Outcome outcomeOf(const Result<T>& result, ExitStatus otherwise) {
+template <typename T> Outcome outcomeOf(const Result<T>& result, ExitStatus otherwise) {
     return result.ok() ? Outcome{} : Outcome{otherwise, result.message()};
 }
 

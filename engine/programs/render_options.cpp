@@ -14,19 +14,22 @@ constexpr int kLargestSide = 16384; // the least that OpenGL 4.5 guarantees for 
 
 bool parseSide(std::string_view text, int& side) {
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), side);
-    return error == std::errc() && end == text.data() + text.size() && side >= 1 && side <= kLargestSide;
+    return error == std::errc() && end == text.data() + text.size() && side >= 1 &&
+           side <= kLargestSide;
 }
 
 /// A file, or the name of a plugin in one of the folders.
 Result<fs::path> findPlugin(const std::string& nameOrFile) {
-    if (nameOrFile.find('/') != std::string::npos || nameOrFile.ends_with(".so")) return fs::path(nameOrFile);
+    if (nameOrFile.find('/') != std::string::npos || nameOrFile.ends_with(".so"))
+        return fs::path(nameOrFile);
     std::string places;
     for (const fs::path& folder : pluginFolders()) {
         const fs::path file = folder / (nameOrFile + ".so");
         if (fs::exists(file)) return file;
         places += (places.empty() ? "'" : ", '") + folder.string() + "'";
     }
-    return Error{fmt::format("--plugin {}: there is no {}.so in {}", nameOrFile, nameOrFile, places)};
+    return Error{
+        fmt::format("--plugin {}: there is no {}.so in {}", nameOrFile, nameOrFile, places)};
 }
 
 } // namespace
@@ -34,25 +37,55 @@ Result<fs::path> findPlugin(const std::string& nameOrFile) {
 std::vector<fs::path> pluginFolders() {
     std::error_code error;
     const fs::path program = fs::read_symlink("/proc/self/exe", error).parent_path();
-    return {(program / "../lib/tyndall/plugins").lexically_normal(), (program / "../lib/plugins").lexically_normal()};
+    return {(program / "../lib/tyndall/plugins").lexically_normal(),
+            (program / "../lib/plugins").lexically_normal()};
 }
 
 void addRenderOptions(CLI::App& command, RenderOptions& options) {
-    command.add_option("SCENE", options.scene, "A scene file, or a .gltf, .glb, .vdb or .nvdb")->required();
-    command.add_option("--size", options.size, "Width and height in pixels (1280x720)")->type_name("WxH");
-    command.add_option("--backend", options.backend, "How to get an OpenGL context: auto, egl or osmesa (auto)")->type_name("NAME");
-    command.add_option("--device", options.device, "The EGL device to render on; 'tyndall info' lists them")->type_name("N");
-    command.add_option("--gi", options.gi, "Technique for indirect light: auto, none, a name, or TERM=NAME,... (auto)")->type_name("NAME");
-    command.add_option("--terms", options.terms, "Transport terms to render, comma-separated: LE,LSE,LVE ... (all)")->type_name("LIST");
-    command.add_option("--quality", options.quality, "Preset: low, medium, high or ultra")->type_name("NAME");
-    command.add_option("--set", options.assignments, "Any setting, repeatable; 'tyndall info --settings' lists them")
-        ->type_name("KEY=VALUE")->allow_extra_args(false);
-    command.add_option("--plugin", options.plugins, "A shared-library plugin, by name or file, repeatable")
-        ->type_name("PLUGIN")->allow_extra_args(false);
-    command.add_option("--camera", options.camera, "The camera to look through, by node name (the scene's own)")->type_name("NAME");
-    command.add_option("--pose", options.pose, "Put the camera there instead: x,y,z,qx,qy,qz,qw in metres and as a quaternion, perhaps ,yfov in radians")
-        ->type_name("NUMBERS")->allow_extra_args(false);
-    command.add_option("--time", options.time, "Where the scene's clock starts (0)")->type_name("SECONDS");
+    command.add_option("SCENE", options.scene, "A scene file, or a .gltf, .glb, .vdb or .nvdb")
+        ->required();
+    command.add_option("--size", options.size, "Width and height in pixels (1280x720)")
+        ->type_name("WxH");
+    command
+        .add_option("--backend", options.backend,
+                    "How to get an OpenGL context: auto, egl or osmesa (auto)")
+        ->type_name("NAME");
+    command
+        .add_option("--device", options.device,
+                    "The EGL device to render on; 'tyndall info' lists them")
+        ->type_name("N");
+    command
+        .add_option("--gi", options.gi,
+                    "Technique for indirect light: auto, none, a name, or TERM=NAME,... (auto)")
+        ->type_name("NAME");
+    command
+        .add_option("--terms", options.terms,
+                    "Transport terms to render, comma-separated: LE,LSE,LVE ... (all)")
+        ->type_name("LIST");
+    command.add_option("--quality", options.quality, "Preset: low, medium, high or ultra")
+        ->type_name("NAME");
+    command
+        .add_option("--set", options.assignments,
+                    "Any setting, repeatable; 'tyndall info --settings' lists them")
+        ->type_name("KEY=VALUE")
+        ->allow_extra_args(false);
+    command
+        .add_option("--plugin", options.plugins,
+                    "A shared-library plugin, by name or file, repeatable")
+        ->type_name("PLUGIN")
+        ->allow_extra_args(false);
+    command
+        .add_option("--camera", options.camera,
+                    "The camera to look through, by node name (the scene's own)")
+        ->type_name("NAME");
+    command
+        .add_option(
+            "--pose", options.pose,
+            "Put the camera there instead: x,y,z,qx,qy,qz,qw in metres and as a quaternion, perhaps ,yfov in radians")
+        ->type_name("NUMBERS")
+        ->allow_extra_args(false);
+    command.add_option("--time", options.time, "Where the scene's clock starts (0)")
+        ->type_name("SECONDS");
     command.add_option("--seed", options.seed, "Seed of everything random (0)")->type_name("N");
 }
 
@@ -61,13 +94,16 @@ Result<void> parseSize(const std::string& text, int& width, int& height) {
     if (middle != std::string::npos && parseSide(std::string_view(text).substr(0, middle), width) &&
         parseSide(std::string_view(text).substr(middle + 1), height))
         return {};
-    return Error{fmt::format("--size {}: it takes WIDTHxHEIGHT, each 1 to {}, such as 1280x720", text, kLargestSide)};
+    return Error{fmt::format("--size {}: it takes WIDTHxHEIGHT, each 1 to {}, such as 1280x720",
+                             text, kLargestSide)};
 }
 
 Result<PoseOption> parsePose(const std::string& text) {
     std::vector<double> numbers;
-    const Error wrong{fmt::format("--pose {}: it takes x,y,z,qx,qy,qz,qw (metres and a quaternion), and perhaps ,yfov in radians", text)};
-    for (const char *at = text.data(), *end = at + text.size(); ; ++at) {
+    const Error wrong{fmt::format(
+        "--pose {}: it takes x,y,z,qx,qy,qz,qw (metres and a quaternion), and perhaps ,yfov in radians",
+        text)};
+    for (const char *at = text.data(), *end = at + text.size();; ++at) {
         double number = 0;
         const auto [next, error] = std::from_chars(at, end, number);
         if (error != std::errc() || !std::isfinite(number)) return wrong;
@@ -81,11 +117,15 @@ Result<PoseOption> parsePose(const std::string& text) {
     pose.position = {numbers[0], numbers[1], numbers[2]};
     pose.rotation = dquat(numbers[6], numbers[3], numbers[4], numbers[5]);
     const double length = glm::length(pose.rotation);
-    if (!(length > 1e-6)) return Error{fmt::format("--pose {}: its quaternion is zero; 0,0,0,1 does not turn the camera", text)};
+    if (!(length > 1e-6))
+        return Error{fmt::format(
+            "--pose {}: its quaternion is zero; 0,0,0,1 does not turn the camera", text)};
     // One that is unit but for rounding stays as it is: the picture is then the same to the last bit.
     if (std::abs(length - 1) > 1e-12) pose.rotation /= length;
     if (numbers.size() == 8) {
-        if (!(numbers[7] > 0 && numbers[7] < kPi)) return Error{fmt::format("--pose {}: the last number, yfov, must lie between 0 and pi radians", text)};
+        if (!(numbers[7] > 0 && numbers[7] < kPi))
+            return Error{fmt::format(
+                "--pose {}: the last number, yfov, must lie between 0 and pi radians", text)};
         pose.yfov = numbers[7];
     }
     return pose;
@@ -93,13 +133,15 @@ Result<PoseOption> parsePose(const std::string& text) {
 
 std::string poseText(const PoseOption& pose) {
     const dquat& q = pose.rotation;
-    std::string text = fmt::format("{},{},{},{},{},{},{}", pose.position.x, pose.position.y, pose.position.z, q.x, q.y, q.z, q.w);
+    std::string text = fmt::format("{},{},{},{},{},{},{}", pose.position.x, pose.position.y,
+                                   pose.position.z, q.x, q.y, q.z, q.w);
     return pose.yfov ? fmt::format("{},{}", text, *pose.yfov) : text;
 }
 
 Result<RenderPlan> understand(const RenderOptions& options) {
     RenderPlan plan;
-    if (Result<void> size = parseSize(options.size, plan.width, plan.height); !size.ok()) return size.error();
+    if (Result<void> size = parseSize(options.size, plan.width, plan.height); !size.ok())
+        return size.error();
     const Result<gl::Backend> backend = gl::parseBackend(options.backend);
     if (!backend.ok()) return Error{"--backend " + options.backend + ": " + backend.message()};
     plan.backend = *backend;
@@ -118,7 +160,9 @@ Result<RenderPlan> understand(const RenderOptions& options) {
         if (!pose.ok()) return pose.error();
         plan.pose = *pose;
     }
-    if (options.device < -1) return Error{fmt::format("--device {}: devices are numbered from 0; 'tyndall info' lists them", options.device)};
+    if (options.device < -1)
+        return Error{fmt::format(
+            "--device {}: devices are numbered from 0; 'tyndall info' lists them", options.device)};
     for (const std::string& name : options.plugins) {
         Result<fs::path> file = findPlugin(name);
         if (!file.ok()) return file.error();

@@ -9,7 +9,8 @@
 namespace tyndall {
 namespace {
 
-constexpr std::string_view kTechniqueKey = "gi.technique="; // a name, not a number: it goes into the request
+constexpr std::string_view kTechniqueKey =
+    "gi.technique="; // a name, not a number: it goes into the request
 
 Result<int> findCamera(const Scene& scene, const std::string& name) {
     std::string known;
@@ -23,7 +24,9 @@ Result<int> findCamera(const Scene& scene, const std::string& name) {
     }
     const std::string nearest = nearestName(name, names);
     return Error{fmt::format("--camera {}: the scene has no camera of this name; {}", name,
-                             !nearest.empty() ? "did you mean '" + nearest + "'?" : known.empty() ? "it has none at all" : "it has " + known)};
+                             !nearest.empty() ? "did you mean '" + nearest + "'?"
+                             : known.empty()  ? "it has none at all"
+                                              : "it has " + known)};
 }
 
 /// The lens of that node's camera at another place.
@@ -38,7 +41,8 @@ CameraPose posedCamera(const Scene& scene, int node, const PoseOption& pose) {
 
 } // namespace
 
-Outcome RenderSession::loadSceneFile(const RenderOptions& options, ProgressStyle style, CpuProfiler* profiler) {
+Outcome RenderSession::loadSceneFile(const RenderOptions& options, ProgressStyle style,
+                                     CpuProfiler* profiler) {
     const CpuZone zone(profiler, "scene.load");
     Progress progress("loading " + options.scene, style);
     const LoadOptions load{[&progress](float fraction, const std::string& what) {
@@ -54,7 +58,8 @@ Outcome RenderSession::loadSceneFile(const RenderOptions& options, ProgressStyle
     return {};
 }
 
-Outcome RenderSession::startRenderer(const RenderOptions& options, const RenderPlan& plan, CpuProfiler* profiler) {
+Outcome RenderSession::startRenderer(const RenderOptions& options, const RenderPlan& plan,
+                                     CpuProfiler* profiler) {
     {
         const CpuZone zone(profiler, "context.create");
         gl::ContextOptions contextOptions;
@@ -71,7 +76,8 @@ Outcome RenderSession::startRenderer(const RenderOptions& options, const RenderP
     rendererOptions.pluginFiles = plan.plugins;
     Result<std::unique_ptr<Renderer>> renderer = Renderer::create(context_, rendererOptions);
     // With a plugin of the user's choice the likely culprit is that file.
-    if (!renderer.ok()) return plan.plugins.empty() ? failed(renderer.message()) : wrongInput(renderer.message());
+    if (!renderer.ok())
+        return plan.plugins.empty() ? failed(renderer.message()) : wrongInput(renderer.message());
     renderer_ = std::move(*renderer);
     return {};
 }
@@ -87,17 +93,22 @@ Outcome RenderSession::assign(const std::string& assignment, const std::string& 
 
 Outcome RenderSession::applySettings(const RenderOptions& options, const RenderPlan& plan) {
     for (const std::string& assignment : scene_.settings)
-        if (Outcome done = assign(assignment, fmt::format("'{}': /settings: ", options.scene)); !done.ok()) return done;
+        if (Outcome done = assign(assignment, fmt::format("'{}': /settings: ", options.scene));
+            !done.ok())
+            return done;
     if (plan.quality) renderer_->settings().applyPreset(*plan.quality);
     for (const std::string& assignment : options.assignments)
         if (Outcome done = assign(assignment, "--set: "); !done.ok()) return done;
     if (!options.gi.empty()) request_.gi = options.gi;
     // What cannot be rendered in any scene is said before one is uploaded.
-    const Result<FramePlan> framePlan = makePlan(request_.gi, request_.terms, renderer_->techniques(), {true, true, true, true});
-    return framePlan.ok() ? Outcome{} : wrongInput("--gi " + request_.gi + ": " + framePlan.message());
+    const Result<FramePlan> framePlan =
+        makePlan(request_.gi, request_.terms, renderer_->techniques(), {true, true, true, true});
+    return framePlan.ok() ? Outcome{}
+                          : wrongInput("--gi " + request_.gi + ": " + framePlan.message());
 }
 
-Outcome RenderSession::open(const RenderOptions& options, ProgressStyle progress, CpuProfiler* profiler, std::unique_ptr<RenderSession>& session) {
+Outcome RenderSession::open(const RenderOptions& options, ProgressStyle progress,
+                            CpuProfiler* profiler, std::unique_ptr<RenderSession>& session) {
     const Result<RenderPlan> plan = understand(options);
     if (!plan.ok()) return wrongInput(plan.message());
     std::unique_ptr<RenderSession> opened(new RenderSession);
@@ -114,16 +125,20 @@ Outcome RenderSession::open(const RenderOptions& options, ProgressStyle progress
         if (!node.ok()) return wrongInput(node.message());
         request.cameraNode = *node;
     } else if (opened->scene_.activeCamera == kNone) {
-        return wrongInput(fmt::format("'{}' has no camera: add a node with a \"camera\" and name it under \"camera\"", options.scene));
+        return wrongInput(fmt::format(
+            "'{}' has no camera: add a node with a \"camera\" and name it under \"camera\"",
+            options.scene));
     }
     if (plan->pose) {
-        const int node = request.cameraNode != kNone ? request.cameraNode : opened->scene_.activeCamera;
+        const int node =
+            request.cameraNode != kNone ? request.cameraNode : opened->scene_.activeCamera;
         request.pose = posedCamera(opened->scene_, node, *plan->pose);
     }
     if (Outcome done = opened->startRenderer(options, *plan, profiler); !done.ok()) return done;
     if (Outcome done = opened->applySettings(options, *plan); !done.ok()) return done;
     const CpuZone zone(profiler, "renderer.setScene");
-    if (const Result<void> set = opened->renderer_->setScene(opened->scene_); !set.ok()) return wrongInput(set.message());
+    if (const Result<void> set = opened->renderer_->setScene(opened->scene_); !set.ok())
+        return wrongInput(set.message());
     session = std::move(opened);
     return {};
 }

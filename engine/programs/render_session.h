@@ -18,7 +18,8 @@ public:
     /// Reads the scene first, so that a wrong file is refused before anything else is done; then context, renderer, settings:
     /// those of the scene file, over them the preset, over that `--set`. Says what was supplied and which back end it is.
     /// `profiler` may be null and must outlive the session.
-    static Outcome open(const RenderOptions& options, ProgressStyle progress, CpuProfiler* profiler, std::unique_ptr<RenderSession>& session);
+    static Outcome open(const RenderOptions& options, ProgressStyle progress, CpuProfiler* profiler,
+                        std::unique_ptr<RenderSession>& session);
 
     /// For the first frame; time, terms, technique, camera and seed as on the command line.
     [[nodiscard]] const FrameRequest& request() const { return request_; }
@@ -29,8 +30,10 @@ public:
 
 private:
     RenderSession() = default;
-    Outcome loadSceneFile(const RenderOptions& options, ProgressStyle progress, CpuProfiler* profiler);
-    Outcome startRenderer(const RenderOptions& options, const RenderPlan& plan, CpuProfiler* profiler);
+    Outcome loadSceneFile(const RenderOptions& options, ProgressStyle progress,
+                          CpuProfiler* profiler);
+    Outcome startRenderer(const RenderOptions& options, const RenderPlan& plan,
+                          CpuProfiler* profiler);
     Outcome applySettings(const RenderOptions& options, const RenderPlan& plan);
     Outcome assign(const std::string& assignment, const std::string& origin);
 

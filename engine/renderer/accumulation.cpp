@@ -16,7 +16,8 @@ uint32_t Accumulation::next(const std::string& key, bool restart) {
 }
 
 bool Accumulation::shouldMeasure(const ConvergeSettings& settings) const {
-    return frames_ >= 2 && (frames_ % uint32_t(settings.checkEvery) == 0 || frames_ == uint32_t(settings.maximumFrames));
+    return frames_ >= 2 && (frames_ % uint32_t(settings.checkEvery) == 0 ||
+                            frames_ == uint32_t(settings.maximumFrames));
 }
 
 void Accumulation::measure(const Image& mean) {

@@ -19,7 +19,9 @@ uint32_t verticesPerPrimitive(fg::Topology topology) {
 }
 
 gpu::BlendVertex packVertex(const Mesh& mesh, size_t i) {
-    const auto uv = [&](int set) { return mesh.uvs[size_t(set)].empty() ? vec2(0) : mesh.uvs[size_t(set)][i]; };
+    const auto uv = [&](int set) {
+        return mesh.uvs[size_t(set)].empty() ? vec2(0) : mesh.uvs[size_t(set)][i];
+    };
     gpu::BlendVertex vertex{};
     vertex.position = vec4(mesh.positions[i], 1);
     vertex.normal = mesh.normals.empty() ? vec4(0) : vec4(mesh.normals[i], 0);
@@ -33,10 +35,11 @@ gpu::BlendVertex packVertex(const Mesh& mesh, size_t i) {
 } // namespace
 
 void sortBackToFront(std::vector<BlendPrimitive>& primitives) {
-    std::sort(primitives.begin(), primitives.end(), [](const BlendPrimitive& a, const BlendPrimitive& b) {
-        if (a.depth != b.depth) return a.depth > b.depth;
-        return a.item != b.item ? a.item < b.item : a.first < b.first;
-    });
+    std::sort(primitives.begin(), primitives.end(),
+              [](const BlendPrimitive& a, const BlendPrimitive& b) {
+                  if (a.depth != b.depth) return a.depth > b.depth;
+                  return a.item != b.item ? a.item < b.item : a.first < b.first;
+              });
 }
 
 BlendList::~BlendList() {
@@ -51,8 +54,9 @@ const GpuScene& BlendList::scene() const {
 
 Result<void> BlendList::update(const GpuScene& scene, const ViewResources& view) {
     const bool sceneChanged = scene_ != &scene || seen_ != scene.version();
-    const bool viewChanged = seenPosition_ != view.data.cameraPosition || seenForward_ != view.data.cameraForward ||
-                             seenView_ != view.data.viewFromRender || seenSize_ != ivec2(view.width, view.height);
+    const bool viewChanged =
+        seenPosition_ != view.data.cameraPosition || seenForward_ != view.data.cameraForward ||
+        seenView_ != view.data.viewFromRender || seenSize_ != ivec2(view.width, view.height);
     if (!sceneChanged && !viewChanged) return {};
     scene_ = &scene;
     any_ = !scene.items(AlphaMode::Blend).empty();
@@ -84,8 +88,9 @@ Result<void> BlendList::updateVertices(const GpuScene& scene) {
     }
     if (vertices_.id) executor_.release(vertices_);
     vertices_ = {};
-    Result<gl::Buffer> buffer = gl::Buffer::create("BlendVertices", vertices.size() * sizeof(gpu::BlendVertex), gl::BufferAccess::GpuOnly,
-                                                   vertices.data());
+    Result<gl::Buffer> buffer =
+        gl::Buffer::create("BlendVertices", vertices.size() * sizeof(gpu::BlendVertex),
+                           gl::BufferAccess::GpuOnly, vertices.data());
     if (!buffer) return buffer.error();
     vertices_ = executor_.registerBuffer("BlendVertices", std::move(*buffer));
     return {};
@@ -97,7 +102,8 @@ void BlendList::collect(const GpuScene& scene, const ViewResources& view) {
     // A pixel more on each side than the view has: the list serves all frames of an average, each with its own jitter.
     ViewResources wider = view;
     wider.data.clipFromRender = glm::transpose(wider.data.clipFromRender);
-    for (int axis = 0; axis < 2; ++axis) wider.data.clipFromRender[axis] /= 1.0f + 4.0f / view.data.size[axis];
+    for (int axis = 0; axis < 2; ++axis)
+        wider.data.clipFromRender[axis] /= 1.0f + 4.0f / view.data.size[axis];
     wider.data.clipFromRender = glm::transpose(wider.data.clipFromRender);
     const std::array<vec4, 5> planes = frustumPlanes(wider.data);
     const dvec3 forward(vec3(view.data.cameraForward)), eye(vec3(view.data.cameraPosition));
@@ -106,13 +112,15 @@ void BlendList::collect(const GpuScene& scene, const ViewResources& view) {
         const Mesh& mesh = scene.scene().meshes[size_t(items[i].mesh)];
         const dmat4 renderFromLocal(scene.objectData()[items[i].object].renderFromLocal);
         // Depth along the axis is an affine function of the local position.
-        const dvec3 gradient(glm::dot(forward, dvec3(renderFromLocal[0])), glm::dot(forward, dvec3(renderFromLocal[1])),
+        const dvec3 gradient(glm::dot(forward, dvec3(renderFromLocal[0])),
+                             glm::dot(forward, dvec3(renderFromLocal[1])),
                              glm::dot(forward, dvec3(renderFromLocal[2])));
         const double offset = glm::dot(forward, dvec3(renderFromLocal[3]) - eye);
         const uint32_t count = verticesPerPrimitive(items[i].topology);
         for (uint32_t first = 0; first + count <= mesh.indices.size(); first += count) {
             dvec3 sum(0);
-            for (uint32_t k = 0; k < count; ++k) sum += dvec3(mesh.positions[mesh.indices[first + k]]);
+            for (uint32_t k = 0; k < count; ++k)
+                sum += dvec3(mesh.positions[mesh.indices[first + k]]);
             primitives_.push_back({float(glm::dot(gradient, sum) / count + offset), i, first});
         }
     }
@@ -123,12 +131,14 @@ void BlendList::makeEntries(const GpuScene& scene) {
     const std::span<const DrawItem> items = scene.items(AlphaMode::Blend);
     for (const BlendPrimitive& primitive : primitives_) {
         const DrawItem& item = items[primitive.item];
-        if (runs_.empty() || runs_.back().material != item.material || runs_.back().topology != item.topology)
+        if (runs_.empty() || runs_.back().material != item.material ||
+            runs_.back().topology != item.topology)
             runs_.push_back({item.material, item.topology, uint32_t(entries_.size()), 0});
         const Mesh& mesh = scene.scene().meshes[size_t(item.mesh)];
         const uint32_t count = verticesPerPrimitive(item.topology);
         for (uint32_t k = 0; k < count; ++k)
-            entries_.emplace_back(firstVertex_[size_t(item.mesh)] + mesh.indices[primitive.first + k], item.object);
+            entries_.emplace_back(
+                firstVertex_[size_t(item.mesh)] + mesh.indices[primitive.first + k], item.object);
         runs_.back().entryCount += count;
     }
 }
@@ -143,7 +153,8 @@ Result<void> BlendList::updateOrder(const GpuScene& scene, const ViewResources& 
         if (order_.id) executor_.release(order_);
         order_ = {};
         orderBytes_ = 0;
-        Result<gl::Buffer> buffer = gl::Buffer::create("BlendOrder", bytes, gl::BufferAccess::CpuUpdates);
+        Result<gl::Buffer> buffer =
+            gl::Buffer::create("BlendOrder", bytes, gl::BufferAccess::CpuUpdates);
         if (!buffer) return buffer.error();
         order_ = executor_.registerBuffer("BlendOrder", std::move(*buffer));
         orderBytes_ = bytes;

@@ -42,7 +42,8 @@ BlendCommon readCommon(fg::Builder& builder, const BlendList& list, const BlendI
 
 fg::RasterState stateOf(fg::Topology topology) {
     fg::RasterState state;
-    state.cull = fg::CullMode::None; // the shader drops back faces, since mirrored objects are drawn with the others
+    state.cull = fg::CullMode::
+        None; // the shader drops back faces, since mirrored objects are drawn with the others
     state.blend = fg::BlendMode::Premultiplied;
     state.depth = fg::DepthMode::Test;
     state.compare = fg::CompareMode::Greater;
@@ -55,28 +56,41 @@ void drawRuns(const BlendCommon& common, fg::RasterCommand& command, fg::PassCon
     command.viewport(0, 0, common.view.width, common.view.height);
     bindView(command, common.view);
     if (common.media.count > 0) bindMedia(command, common.media);
-    command.bind("Objects", scene.objects()).bind("Materials", scene.materials()).bind("BlendVertices", common.list->vertices())
-        .bind("BlendOrder", common.list->order()).params(common.params, "Blend").set("textureLodBias", common.textureLodBias);
+    command.bind("Objects", scene.objects())
+        .bind("Materials", scene.materials())
+        .bind("BlendVertices", common.list->vertices())
+        .bind("BlendOrder", common.list->order())
+        .params(common.params, "Blend")
+        .set("textureLodBias", common.textureLodBias);
     for (const BlendRun& run : common.list->runs()) {
-        command.state(stateOf(run.topology)).set("isTriangle", run.topology == fg::Topology::Triangles ? 1 : 0);
+        command.state(stateOf(run.topology))
+            .set("isTriangle", run.topology == fg::Topology::Triangles ? 1 : 0);
         bindMaterial(context, scene.textures(run.material));
         command.draw(run.entryCount, 1, run.firstEntry);
     }
 }
 
 /// The image to draw on: `image`, or one that nobody reads where the term is not rendered (the shader has all outputs).
-fg::TextureHandle target(fg::Builder& builder, fg::TextureHandle image, const char* unusedName, const ViewResources& view) {
+fg::TextureHandle target(fg::Builder& builder, fg::TextureHandle image, const char* unusedName,
+                         const ViewResources& view) {
     if (image) return builder.write(image, fg::Access::ColorTarget);
-    return builder.create(unusedName, fg::texture2D(fg::Format::RGBA32F, view.width, view.height), fg::Access::ColorTarget);
+    return builder.create(unusedName, fg::texture2D(fg::Format::RGBA32F, view.width, view.height),
+                          fg::Access::ColorTarget);
 }
 
 void executeShade(const ShadeData& data, fg::PassContext& context) {
     const bool media = data.common.media.count > 0;
-    auto command = context.raster("lighting/blend.vert", "lighting/blend.frag",
-                                  {{"MEDIA", media}, {"PHASE_GROUPS", media ? int32_t(data.common.media.phaseGroups) : 1}, {"ENVIRONMENT", data.environmentMap}});
-    const fg::Target depth{data.common.depth, 0, 0}, emission{data.emission, 0, 0}, direct{data.direct, 0, 0};
-    if (media) command.colors({emission, direct, fg::Target{data.inScatter, 0, 0}}, &depth);
-    else command.colors({emission, direct}, &depth);
+    auto command =
+        context.raster("lighting/blend.vert", "lighting/blend.frag",
+                       {{"MEDIA", media},
+                        {"PHASE_GROUPS", media ? int32_t(data.common.media.phaseGroups) : 1},
+                        {"ENVIRONMENT", data.environmentMap}});
+    const fg::Target depth{data.common.depth, 0, 0}, emission{data.emission, 0, 0},
+        direct{data.direct, 0, 0};
+    if (media)
+        command.colors({emission, direct, fg::Target{data.inScatter, 0, 0}}, &depth);
+    else
+        command.colors({emission, direct}, &depth);
     bindLightLists(bindLights(command, data.lights), data.lights);
     if (data.environmentMap) bindEnvironment(command, data.environment);
     command.params(data.surfaceLight, "Surfaces");
@@ -85,30 +99,39 @@ void executeShade(const ShadeData& data, fg::PassContext& context) {
 
 void executeAttenuate(const AttenuateData& data, fg::PassContext& context) {
     const bool media = data.common.media.count > 0;
-    auto command = context.raster("lighting/blend.vert", "lighting/blend_attenuate.frag", {{"MEDIA", media}});
+    auto command =
+        context.raster("lighting/blend.vert", "lighting/blend_attenuate.frag", {{"MEDIA", media}});
     const fg::Target depth{data.common.depth, 0, 0};
     command.colors({fg::Target{data.image, 0, 0}}, &depth);
     if (media) command.bind("transmittance", data.transmittance);
     drawRuns(data.common, command, context);
 }
 
-void addShadePass(fg::FrameGraph& graph, const BlendList& list, const BlendInputs& inputs, const char* reason, TermImages& images) {
-    const fg::TextureHandle emission = images.find(Term::LE), direct = images.find(Term::LSE), inScatter = images.find(Term::LVE);
-    if (!reason && !emission && !direct && !inScatter) reason = "no term of direct light is rendered";
-    const ShadeData& pass = graph.addPass<ShadeData>("blend",
+void addShadePass(fg::FrameGraph& graph, const BlendList& list, const BlendInputs& inputs,
+                  const char* reason, TermImages& images) {
+    const fg::TextureHandle emission = images.find(Term::LE), direct = images.find(Term::LSE),
+                            inScatter = images.find(Term::LVE);
+    if (!reason && !emission && !direct && !inScatter)
+        reason = "no term of direct light is rendered";
+    const ShadeData& pass = graph.addPass<ShadeData>(
+        "blend",
         [&](fg::Builder& builder, ShadeData& data) {
             if (reason) return builder.skip(reason);
             data.common = readCommon(builder, list, inputs);
             data.lights = readLights(builder, inputs.lights);
-            data.environmentMap = inputs.environment && !inputs.environment->black() && inputs.settings.environmentSamples > 0;
+            data.environmentMap = inputs.environment && !inputs.environment->black() &&
+                                  inputs.settings.environmentSamples > 0;
             if (data.environmentMap) data.environment = inputs.environment->resources();
-            data.surfaceLight = surfaceLightParams(inputs.settings, (inputs.view.data.flags & gpu::kViewConverge) != 0);
-            data.common.params.marchFlags = (inScatter ? gpu::kMarchInScatter : 0u) | (emission ? gpu::kMarchEmission : 0u);
+            data.surfaceLight = surfaceLightParams(
+                inputs.settings, (inputs.view.data.flags & gpu::kViewConverge) != 0);
+            data.common.params.marchFlags =
+                (inScatter ? gpu::kMarchInScatter : 0u) | (emission ? gpu::kMarchEmission : 0u);
             data.common.params.lightCount = inputs.lights.lightCount;
             data.common.params.direct = direct ? 1u : 0u;
             data.emission = target(builder, emission, "blend.unusedEmission", inputs.view);
             data.direct = target(builder, direct, "blend.unusedDirect", inputs.view);
-            if (inputs.media.count > 0) data.inScatter = target(builder, inScatter, "blend.unusedInScatter", inputs.view);
+            if (inputs.media.count > 0)
+                data.inScatter = target(builder, inScatter, "blend.unusedInScatter", inputs.view);
         },
         [](const ShadeData& data, fg::PassContext& context) { executeShade(data, context); });
     if (reason) return;
@@ -117,29 +140,37 @@ void addShadePass(fg::FrameGraph& graph, const BlendList& list, const BlendInput
     if (inScatter && inputs.media.count > 0) images.replace(Term::LVE, pass.inScatter);
 }
 
-void addAttenuatePass(fg::FrameGraph& graph, const BlendList& list, BlendInputs inputs, TermImageHandle& image) {
+void addAttenuatePass(fg::FrameGraph& graph, const BlendList& list, BlendInputs inputs,
+                      TermImageHandle& image) {
     // Media that are only on the lights' ways take nothing from the ray.
     if (!inputs.transmittance || graph.isAbsent(inputs.transmittance)) inputs.media.count = 0;
-    const AttenuateData& pass = graph.addPass<AttenuateData>("blend.indirect",
+    const AttenuateData& pass = graph.addPass<AttenuateData>(
+        "blend.indirect",
         [&](fg::Builder& builder, AttenuateData& data) {
             data.common = readCommon(builder, list, inputs);
             data.common.params.inMedia = (image.terms & kIndirectInMedia) != 0 ? 1u : 0u;
             if (inputs.media.count > 0) data.transmittance = builder.read(inputs.transmittance);
             data.image = builder.write(image.image, fg::Access::ColorTarget);
         },
-        [](const AttenuateData& data, fg::PassContext& context) { executeAttenuate(data, context); });
+        [](const AttenuateData& data, fg::PassContext& context) {
+            executeAttenuate(data, context);
+        });
     image.image = pass.image;
 }
 
 } // namespace
 
-TermImages addBlendPass(fg::FrameGraph& graph, const BlendList& list, const BlendInputs& inputs, const TermImages& images) {
+TermImages addBlendPass(fg::FrameGraph& graph, const BlendList& list, const BlendInputs& inputs,
+                        const TermImages& images) {
     TermImages result = images;
-    const char* reason = !list.any() ? "no blended surface in the scene" : list.runs().empty() ? "no blended surface in view" : nullptr;
+    const char* reason = !list.any()           ? "no blended surface in the scene"
+                         : list.runs().empty() ? "no blended surface in view"
+                                               : nullptr;
     addShadePass(graph, list, inputs, reason, result);
     if (reason) return result;
     for (uint32_t i = 0; i < result.count; ++i)
-        if ((result.images[i].terms & kDirectTerms) == 0) addAttenuatePass(graph, list, inputs, result.images[i]);
+        if ((result.images[i].terms & kDirectTerms) == 0)
+            addAttenuatePass(graph, list, inputs, result.images[i]);
     return result;
 }
 

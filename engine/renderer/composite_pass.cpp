@@ -6,7 +6,9 @@
 namespace tyndall {
 namespace {
 
-bool hasContent(const fg::FrameGraph& graph, fg::TextureHandle handle) { return handle && !graph.isAbsent(handle); }
+bool hasContent(const fg::FrameGraph& graph, fg::TextureHandle handle) {
+    return handle && !graph.isAbsent(handle);
+}
 
 } // namespace
 
@@ -26,65 +28,97 @@ void TermImages::replace(Term term, fg::TextureHandle image) {
         if (images[i].terms == bit(term)) images[i].image = image;
 }
 
-fg::TextureHandle addCompositePass(fg::FrameGraph& graph, const char* passName, const char* imageName, fg::TextureHandle radiance,
+fg::TextureHandle addCompositePass(fg::FrameGraph& graph, const char* passName,
+                                   const char* imageName, fg::TextureHandle radiance,
                                    fg::TextureHandle transmittance, fg::TextureHandle added) {
-    struct Data { fg::TextureHandle radiance, transmittance, added, seen; };
+    struct Data {
+        fg::TextureHandle radiance, transmittance, added, seen;
+    };
     const bool throughMedia = hasContent(graph, transmittance);
-    const Data& pass = graph.addPass<Data>(passName,
+    const Data& pass = graph.addPass<Data>(
+        passName,
         [&](fg::Builder& builder, Data& data) {
             if (!throughMedia) return builder.skip("no medium between the eye and the surfaces");
             data.radiance = builder.read(radiance);
             data.transmittance = builder.read(transmittance);
             if (hasContent(graph, added)) data.added = builder.read(added);
             const fg::TextureDesc size = graph.desc(radiance);
-            data.seen = builder.create(imageName, fg::texture2D(fg::Format::RGBA32F, size.width, size.height));
+            data.seen = builder.create(imageName,
+                                       fg::texture2D(fg::Format::RGBA32F, size.width, size.height));
         },
         [](const Data& data, fg::PassContext& context) {
             auto command = context.compute("post/attenuate.comp", {{"ADD", data.added ? 1 : 0}});
-            command.bind("radiance", data.radiance).bind("transmittance", data.transmittance).bind("seen", data.seen);
+            command.bind("radiance", data.radiance)
+                .bind("transmittance", data.transmittance)
+                .bind("seen", data.seen);
             if (data.added) command.bind("added", data.added);
             command.dispatchOver(data.seen);
         });
     return throughMedia ? pass.seen : radiance;
 }
 
-fg::TextureHandle addSumPass(fg::FrameGraph& graph, const TermImages& images, int width, int height) {
-    struct Data { TermImages images; fg::TextureHandle sum; };
-    return graph.addPass<Data>("sum",
-        [&](fg::Builder& builder, Data& data) {
-            data.images = images;
-            for (uint32_t i = 0; i < images.count; ++i) data.images.images[i].image = builder.read(images.images[i].image);
-            data.sum = builder.create("beauty", fg::texture2D(fg::Format::RGBA32F, width, height),
-                                      images.count > 0 ? fg::Access::StorageWrite : fg::Access::TransferWrite);
-        },
-        [](const Data& data, fg::PassContext& context) {
-            if (data.images.count == 0) {
-                static constexpr float kBlack[4] = {0, 0, 0, 1};
-                return context.clearTexture(data.sum, kBlack);
-            }
-            static constexpr const char* kNames[kMaxTermImages] = {"image0", "image1", "image2", "image3", "image4", "image5", "image6", "image7"};
-            auto command = context.compute("post/sum.comp", {{"COUNT", int32_t(data.images.count)}});
-            for (uint32_t i = 0; i < data.images.count; ++i) command.bind(kNames[i], data.images.images[i].image);
-            command.bind("sum", data.sum).dispatchOver(data.sum);
-        }).sum;
+fg::TextureHandle addSumPass(fg::FrameGraph& graph, const TermImages& images, int width,
+                             int height) {
+    struct Data {
+        TermImages images;
+        fg::TextureHandle sum;
+    };
+    return graph
+        .addPass<Data>(
+            "sum",
+            [&](fg::Builder& builder, Data& data) {
+                data.images = images;
+                for (uint32_t i = 0; i < images.count; ++i)
+                    data.images.images[i].image = builder.read(images.images[i].image);
+                data.sum = builder.create(
+                    "beauty", fg::texture2D(fg::Format::RGBA32F, width, height),
+                    images.count > 0 ? fg::Access::StorageWrite : fg::Access::TransferWrite);
+            },
+            [](const Data& data, fg::PassContext& context) {
+                if (data.images.count == 0) {
+                    static constexpr float kBlack[4] = {0, 0, 0, 1};
+                    return context.clearTexture(data.sum, kBlack);
+                }
+                static constexpr const char* kNames[kMaxTermImages] = {
+                    "image0", "image1", "image2", "image3", "image4", "image5", "image6", "image7"};
+                auto command =
+                    context.compute("post/sum.comp", {{"COUNT", int32_t(data.images.count)}});
+                for (uint32_t i = 0; i < data.images.count; ++i)
+                    command.bind(kNames[i], data.images.images[i].image);
+                command.bind("sum", data.sum).dispatchOver(data.sum);
+            })
+        .sum;
 }
 
-fg::TextureHandle addAccumulatePass(fg::FrameGraph& graph, const char* historyName, fg::TextureHandle image, uint32_t frame) {
-    struct Data { fg::TextureHandle image, previous, current; gpu::AccumulateParams params; };
+fg::TextureHandle addAccumulatePass(fg::FrameGraph& graph, const char* historyName,
+                                    fg::TextureHandle image, uint32_t frame) {
+    struct Data {
+        fg::TextureHandle image, previous, current;
+        gpu::AccumulateParams params;
+    };
     const fg::TextureDesc size = graph.desc(image);
-    const fg::TextureHistory history = graph.historyTexture(historyName, fg::texture2D(fg::Format::RGBA32F, size.width, size.height));
-    CHECK(frame >= 1 && (frame == 1 || !history.wasReset), "an average of frames was lost: start again with frame 1");
-    return graph.addPass<Data>("accumulate",
-        [&](fg::Builder& builder, Data& data) {
-            data.image = builder.read(image);
-            data.previous = builder.read(history.previous);
-            data.current = builder.write(history.current);
-            data.params = {1.0f / float(frame), frame, 0, 0};
-        },
-        [](const Data& data, fg::PassContext& context) {
-            context.compute("post/accumulate.comp").bind("image", data.image).bind("previous", data.previous).bind("current", data.current)
-                .params(data.params).dispatchOver(data.current);
-        }).current;
+    const fg::TextureHistory history = graph.historyTexture(
+        historyName, fg::texture2D(fg::Format::RGBA32F, size.width, size.height));
+    CHECK(frame >= 1 && (frame == 1 || !history.wasReset),
+          "an average of frames was lost: start again with frame 1");
+    return graph
+        .addPass<Data>(
+            "accumulate",
+            [&](fg::Builder& builder, Data& data) {
+                data.image = builder.read(image);
+                data.previous = builder.read(history.previous);
+                data.current = builder.write(history.current);
+                data.params = {1.0f / float(frame), frame, 0, 0};
+            },
+            [](const Data& data, fg::PassContext& context) {
+                context.compute("post/accumulate.comp")
+                    .bind("image", data.image)
+                    .bind("previous", data.previous)
+                    .bind("current", data.current)
+                    .params(data.params)
+                    .dispatchOver(data.current);
+            })
+        .current;
 }
 
 } // namespace tyndall

@@ -9,9 +9,9 @@
 namespace tyndall {
 
 struct ConvergeSettings {
-    float relmse;         // of the average, as its own variance estimates it
+    float relmse; // of the average, as its own variance estimates it
     int32_t maximumFrames;
-    int32_t checkEvery;   // frames between measurements, each of which reads the picture back
+    int32_t checkEvery; // frames between measurements, each of which reads the picture back
 };
 std::span<const SettingDesc> convergeSettings();
 

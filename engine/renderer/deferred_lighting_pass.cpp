@@ -3,7 +3,9 @@
 namespace tyndall {
 namespace {
 
-bool hasEnvironment(const SurfaceLightInputs& inputs) { return inputs.environment && !inputs.environment->black(); }
+bool hasEnvironment(const SurfaceLightInputs& inputs) {
+    return inputs.environment && !inputs.environment->black();
+}
 
 fg::TextureHandle addEmissionPass(fg::FrameGraph& graph, const SurfaceLightInputs& inputs) {
     struct Data {
@@ -12,9 +14,12 @@ fg::TextureHandle addEmissionPass(fg::FrameGraph& graph, const SurfaceLightInput
         fg::TextureHandle depth, emissive, emission;
     };
     const bool wanted = (inputs.terms & bit(Term::LE)) != 0;
-    const Data& pass = graph.addPass<Data>("lighting.emission",
+    const Data& pass = graph.addPass<Data>(
+        "lighting.emission",
         [&](fg::Builder& builder, Data& data) {
-            data.emission = builder.create("lighting.emission", fg::texture2D(fg::Format::RGBA32F, inputs.view.width, inputs.view.height));
+            data.emission = builder.create(
+                "lighting.emission",
+                fg::texture2D(fg::Format::RGBA32F, inputs.view.width, inputs.view.height));
             if (!wanted) return builder.skip("the term LE is not rendered");
             if (!hasEnvironment(inputs)) return builder.skip("the environment is black");
             data.view = inputs.view;
@@ -26,7 +31,9 @@ fg::TextureHandle addEmissionPass(fg::FrameGraph& graph, const SurfaceLightInput
             auto command = context.compute("lighting/emission.comp");
             bindView(command, data.view);
             bindEnvironment(command, data.environment);
-            command.bind("gbufferDepth", data.depth).bind("gbufferEmissive", data.emissive).bind("surfaceEmission", data.emission)
+            command.bind("gbufferDepth", data.depth)
+                .bind("gbufferEmissive", data.emissive)
+                .bind("surfaceEmission", data.emission)
                 .dispatchOver(data.emission);
         });
     return wanted && !hasEnvironment(inputs) ? inputs.gbuffer.emissive : pass.emission;
@@ -40,6 +47,13 @@ const char* whyNoDirectLight(const SurfaceLightInputs& inputs) {
     return nullptr;
 }
 
+/// Media of surface light: fewer variants than a march has, for it asks for optical depth once a light.
+int32_t surfaceMediaKinds(const MediaResources& media) {
+    if (media.count == 0) return 0;
+    const uint32_t kinds = uint32_t(mediaKinds(media, true)) & ~gpu::kMediaSingle;
+    return int32_t((kinds & gpu::kMediaGrids) != 0 ? kinds | gpu::kMediaShapes : kinds);
+}
+
 fg::TextureHandle addDirectPass(fg::FrameGraph& graph, const SurfaceLightInputs& inputs) {
     struct Data {
         ViewResources view;
@@ -51,31 +65,47 @@ fg::TextureHandle addDirectPass(fg::FrameGraph& graph, const SurfaceLightInputs&
         int32_t environmentMap;
         fg::TextureHandle direct;
     };
-    return graph.addPass<Data>("lighting.direct",
-        [&](fg::Builder& builder, Data& data) {
-            data.direct = builder.create("lighting.direct", fg::texture2D(fg::Format::RGBA32F, inputs.view.width, inputs.view.height));
-            if (const char* reason = whyNoDirectLight(inputs)) return builder.skip(reason);
-            data.view = inputs.view;
-            data.gbuffer.depth = builder.read(inputs.gbuffer.depth);
-            data.gbuffer.normal = builder.read(inputs.gbuffer.normal);
-            data.gbuffer.base = builder.read(inputs.gbuffer.base);
-            data.gbuffer.material = builder.read(inputs.gbuffer.material);
-            data.lights = readLights(builder, inputs.lights);
-            if (inputs.media.count > 0) data.media = readMedia(builder, inputs.media);
-            data.environmentMap = hasEnvironment(inputs) && inputs.settings.environmentSamples > 0;
-            if (data.environmentMap) data.environment = inputs.environment->resources();
-            data.params = surfaceLightParams(inputs.settings, (inputs.view.data.flags & gpu::kViewConverge) != 0);
-        },
-        [](const Data& data, fg::PassContext& context) {
-            auto command = context.compute("lighting/deferred_lighting.comp", {{"MEDIA", data.media.count > 0}, {"ENVIRONMENT", data.environmentMap}});
-            bindView(command, data.view);
-            bindLightLists(bindLights(command, data.lights), data.lights);
-            if (data.media.count > 0) bindMedia(command, data.media);
-            if (data.environmentMap) bindEnvironment(command, data.environment);
-            command.params(data.params, "Surfaces").bind("gbufferDepth", data.gbuffer.depth).bind("gbufferNormal", data.gbuffer.normal)
-                .bind("gbufferBase", data.gbuffer.base).bind("gbufferMaterial", data.gbuffer.material).bind("surfaceDirect", data.direct)
-                .dispatchOver(data.direct);
-        }).direct;
+    return graph
+        .addPass<Data>(
+            "lighting.direct",
+            [&](fg::Builder& builder, Data& data) {
+                data.direct = builder.create(
+                    "lighting.direct",
+                    fg::texture2D(fg::Format::RGBA32F, inputs.view.width, inputs.view.height));
+                if (const char* reason = whyNoDirectLight(inputs)) return builder.skip(reason);
+                data.view = inputs.view;
+                data.gbuffer.depth = builder.read(inputs.gbuffer.depth);
+                data.gbuffer.normal = builder.read(inputs.gbuffer.normal);
+                data.gbuffer.base = builder.read(inputs.gbuffer.base);
+                data.gbuffer.material = builder.read(inputs.gbuffer.material);
+                data.lights = readLights(builder, inputs.lights);
+                if (inputs.media.count > 0) data.media = readMedia(builder, inputs.media);
+                data.environmentMap =
+                    hasEnvironment(inputs) && inputs.settings.environmentSamples > 0;
+                if (data.environmentMap) data.environment = inputs.environment->resources();
+                data.params = surfaceLightParams(
+                    inputs.settings, (inputs.view.data.flags & gpu::kViewConverge) != 0);
+            },
+            [](const Data& data, fg::PassContext& context) {
+                auto command = context.compute(
+                    "lighting/deferred_lighting.comp",
+                    {{"MEDIA", data.media.count > 0},
+                     {"MEDIA_KINDS", surfaceMediaKinds(data.media)},
+                     {"SOFT_SHADOWS", data.lights.softShadows},
+                     {"ENVIRONMENT", data.environmentMap}});
+                bindView(command, data.view);
+                bindLightLists(bindLights(command, data.lights), data.lights);
+                if (data.media.count > 0) bindMedia(command, data.media);
+                if (data.environmentMap) bindEnvironment(command, data.environment);
+                command.params(data.params, "Surfaces")
+                    .bind("gbufferDepth", data.gbuffer.depth)
+                    .bind("gbufferNormal", data.gbuffer.normal)
+                    .bind("gbufferBase", data.gbuffer.base)
+                    .bind("gbufferMaterial", data.gbuffer.material)
+                    .bind("surfaceDirect", data.direct)
+                    .dispatchOver(data.direct);
+            })
+        .direct;
 }
 
 } // namespace

@@ -19,11 +19,14 @@ dvec3 environmentDirection(double u, double v, double rotation) {
     // Turning right-handed about +Y takes -Z towards -X: against the way in which u grows.
     const double azimuth = 2.0 * kPi * (u - 0.5) - rotation;
     const double polar = kPi * v;
-    return {std::sin(azimuth) * std::sin(polar), std::cos(polar), -std::cos(azimuth) * std::sin(polar)};
+    return {std::sin(azimuth) * std::sin(polar), std::cos(polar),
+            -std::cos(azimuth) * std::sin(polar)};
 }
 
-EnvironmentSampler::EnvironmentSampler(const Environment& environment) : rotation_(double(environment.rotation)) {
-    if (environment.image && environment.image->width > 0 && environment.image->height > 0 && environment.image->channels > 0) {
+EnvironmentSampler::EnvironmentSampler(const Environment& environment)
+    : rotation_(double(environment.rotation)) {
+    if (environment.image && environment.image->width > 0 && environment.image->height > 0 &&
+        environment.image->channels > 0) {
         buildFromImage(*environment.image, double(environment.intensity));
     } else {
         width_ = kLeastColumns;
@@ -54,24 +57,29 @@ void EnvironmentSampler::buildFromImage(const Image& image, double intensity) {
     std::vector<dvec3> sums(radiance_.size(), dvec3(0));
     std::vector<double> weights(radiance_.size(), 0.0);
     for (int y = 0; y < image.height; ++y) {
-        const double weight = std::cos(kPi * y / image.height) - std::cos(kPi * (y + 1) / image.height);
+        const double weight =
+            std::cos(kPi * y / image.height) - std::cos(kPi * (y + 1) / image.height);
         for (int x = 0; x < image.width; ++x) {
             const float* pixel = image.at(x, y);
             dvec3 value;
-            for (int c = 0; c < 3; ++c) value[c] = double(pixel[image.channels >= 3 ? c : 0]) * intensity;
-            if (!(std::isfinite(value.x) && std::isfinite(value.y) && std::isfinite(value.z)) || std::min({value.x, value.y, value.z}) < 0) {
+            for (int c = 0; c < 3; ++c)
+                value[c] = double(pixel[image.channels >= 3 ? c : 0]) * intensity;
+            if (!(std::isfinite(value.x) && std::isfinite(value.y) && std::isfinite(value.z)) ||
+                std::min({value.x, value.y, value.z}) < 0) {
                 ++brokenPixels_;
                 value = dvec3(0);
             }
             for (int j = 0; j < growY; ++j)
                 for (int i = 0; i < growX; ++i) {
-                    const size_t to = size_t((y * growY + j) / shrink) * size_t(width_) + size_t((x * growX + i) / shrink);
+                    const size_t to = size_t((y * growY + j) / shrink) * size_t(width_) +
+                                      size_t((x * growX + i) / shrink);
                     sums[to] += weight * value;
                     weights[to] += weight;
                 }
         }
     }
-    for (size_t i = 0; i < radiance_.size(); ++i) radiance_[i] = weights[i] > 0 ? vec3(sums[i] / weights[i]) : vec3(0);
+    for (size_t i = 0; i < radiance_.size(); ++i)
+        radiance_[i] = weights[i] > 0 ? vec3(sums[i] / weights[i]) : vec3(0);
 }
 
 void EnvironmentSampler::buildTable() {
@@ -84,7 +92,8 @@ void EnvironmentSampler::buildTable() {
             const dvec3 value(radiance_[size_t(y) * size_t(width_) + size_t(x)]);
             row += (value.x + value.y + value.z) / 3.0 * solidAngle;
             fluence_ += value * solidAngle;
-            table_[size_t(y + 1) * stride + size_t(x) + 1] = table_[size_t(y) * stride + size_t(x) + 1] + row;
+            table_[size_t(y + 1) * stride + size_t(x) + 1] =
+                table_[size_t(y) * stride + size_t(x) + 1] + row;
         }
     }
     total_ = table_.back();
@@ -99,19 +108,22 @@ double EnvironmentSampler::sum(int x0, int y0, int x1, int y1) const {
 
 double EnvironmentSampler::extent(const Region& region) const {
     const double north = kPi * region.y0 / height_, south = kPi * region.y1 / height_;
-    const double widest = north <= kPi / 2 && south >= kPi / 2 ? 1.0 : std::max(std::sin(north), std::sin(south));
+    const double widest =
+        north <= kPi / 2 && south >= kPi / 2 ? 1.0 : std::max(std::sin(north), std::sin(south));
     return std::max(south - north, 2.0 * kPi * (region.x1 - region.x0) / width_ * widest);
 }
 
 bool EnvironmentSampler::split(const Region& region, Region& low, Region& high) const {
     const double north = kPi * region.y0 / height_, south = kPi * region.y1 / height_;
-    const double width = 2.0 * kPi * (region.x1 - region.x0) / width_ * std::sin(0.5 * (north + south));
+    const double width =
+        2.0 * kPi * (region.x1 - region.x0) / width_ * std::sin(0.5 * (north + south));
     const auto cut = [&](bool alongX) {
         const int first = alongX ? region.x0 : region.y0, last = alongX ? region.x1 : region.y1;
         int best = -1;
         double bestDistance = 0;
         for (int at = first + 1; at < last; ++at) {
-            const double part = alongX ? sum(region.x0, region.y0, at, region.y1) : sum(region.x0, region.y0, region.x1, at);
+            const double part = alongX ? sum(region.x0, region.y0, at, region.y1)
+                                       : sum(region.x0, region.y0, region.x1, at);
             const double distance = std::abs(part - 0.5 * region.weight);
             const double rest = region.weight - part;
             // Rounding in the table is not light.
@@ -164,16 +176,20 @@ EnvironmentLight EnvironmentSampler::meanLight(const Region& region) const {
     for (int y = region.y0; y < region.y1; ++y) {
         const double solidAngle = rowSolidAngle(y);
         for (int x = region.x0; x < region.x1; ++x) {
-            const dvec3 value = dvec3(radiance_[size_t(y) * size_t(width_) + size_t(x)]) * solidAngle;
+            const dvec3 value =
+                dvec3(radiance_[size_t(y) * size_t(width_) + size_t(x)]) * solidAngle;
             light.illuminance += value;
-            direction += (value.x + value.y + value.z) * environmentDirection((x + 0.5) / width_, (y + 0.5) / height_, rotation_);
+            direction += (value.x + value.y + value.z) *
+                         environmentDirection((x + 0.5) / width_, (y + 0.5) / height_, rotation_);
         }
     }
     const double length = glm::length(direction);
     // The whole sphere as one region has no mean direction: the centre of the region then stands for it.
-    light.toLight = length > 1e-6 * (light.illuminance.x + light.illuminance.y + light.illuminance.z)
-                        ? direction / length
-                        : environmentDirection(0.5 * (region.x0 + region.x1) / width_, 0.5 * (region.y0 + region.y1) / height_, rotation_);
+    light.toLight =
+        length > 1e-6 * (light.illuminance.x + light.illuminance.y + light.illuminance.z)
+            ? direction / length
+            : environmentDirection(0.5 * (region.x0 + region.x1) / width_,
+                                   0.5 * (region.y0 + region.y1) / height_, rotation_);
     return light;
 }
 
@@ -185,7 +201,8 @@ EnvironmentLight EnvironmentSampler::sampleLight(const Region& region, double u,
         const int middle = (y0 + y1) / 2;
         (sum(region.x0, region.y0, region.x1, middle) <= rowTarget ? y0 : y1) = middle;
     }
-    const double before = sum(region.x0, region.y0, region.x1, y0), rowWeight = sum(region.x0, y0, region.x1, y0 + 1);
+    const double before = sum(region.x0, region.y0, region.x1, y0),
+                 rowWeight = sum(region.x0, y0, region.x1, y0 + 1);
     const double columnTarget = u * rowWeight;
     int x0 = region.x0, x1 = region.x1;
     while (x1 - x0 > 1) {
@@ -196,11 +213,14 @@ EnvironmentLight EnvironmentSampler::sampleLight(const Region& region, double u,
     const dvec3 value(radiance_[size_t(y0) * size_t(width_) + size_t(x0)]);
     const double pixelWeight = (value.x + value.y + value.z) / 3.0 * rowSolidAngle(y0);
     EnvironmentLight light;
-    if (!(pixelWeight > 0) || !(rowWeight > 0)) return light; // only by rounding, at the very edge of a lit region
+    if (!(pixelWeight > 0) || !(rowWeight > 0))
+        return light; // only by rounding, at the very edge of a lit region
     const double inRow = std::clamp((rowTarget - before) / rowWeight, 0.0, 1.0);
     const double inPixel = std::clamp((columnTarget - pixelBefore) / pixelWeight, 0.0, 1.0);
-    const double cosine = std::lerp(std::cos(kPi * y0 / height_), std::cos(kPi * (y0 + 1) / height_), inRow);
-    light.toLight = environmentDirection((x0 + inPixel) / width_, std::acos(std::clamp(cosine, -1.0, 1.0)) / kPi, rotation_);
+    const double cosine =
+        std::lerp(std::cos(kPi * y0 / height_), std::cos(kPi * (y0 + 1) / height_), inRow);
+    light.toLight = environmentDirection((x0 + inPixel) / width_,
+                                         std::acos(std::clamp(cosine, -1.0, 1.0)) / kPi, rotation_);
     // Probability per solid angle is the importance over the region's; radiance over it:
     light.illuminance = value * (3.0 * region.weight / (value.x + value.y + value.z));
     return light;
@@ -212,11 +232,13 @@ std::vector<EnvironmentLight> EnvironmentSampler::lights(int count) const {
     return result;
 }
 
-std::vector<EnvironmentLight> EnvironmentSampler::sample(int count, uint32_t frame, uint32_t seed) const {
+std::vector<EnvironmentLight> EnvironmentSampler::sample(int count, uint32_t frame,
+                                                         uint32_t seed) const {
     std::vector<EnvironmentLight> result;
     uint64_t index = (uint64_t(seed) << 20) + (uint64_t(1) << 60);
     for (const Region& region : regions(count)) {
-        const dvec2 point = lowDiscrepancyPoint(frame, ++index); // every region has its own sequence
+        const dvec2 point =
+            lowDiscrepancyPoint(frame, ++index); // every region has its own sequence
         const EnvironmentLight light = sampleLight(region, point.x, point.y);
         if (light.illuminance != dvec3(0)) result.push_back(light);
     }

@@ -40,7 +40,8 @@ public:
     /// As many lights for frame `frame` of a sequence: each region's light from one direction in it, drawn in proportion to
     /// importance and weighted by 1/probability. The mean over frames of any sum over the lights tends to the integral over
     /// the environment (frames step through a low-discrepancy sequence; `seed` shifts it).
-    [[nodiscard]] std::vector<EnvironmentLight> sample(int count, uint32_t frame, uint32_t seed) const;
+    [[nodiscard]] std::vector<EnvironmentLight> sample(int count, uint32_t frame,
+                                                       uint32_t seed) const;
 
 private:
     struct Region {
@@ -59,8 +60,9 @@ private:
 
     int width_ = 0, height_ = 0;
     double rotation_ = 0;
-    std::vector<vec3> radiance_;   // nits, top row first
-    std::vector<double> table_;    // sums of importance over [0,x)×[0,y); importance = mean of the channels × solid angle
+    std::vector<vec3> radiance_; // nits, top row first
+    std::vector<double>
+        table_; // sums of importance over [0,x)×[0,y); importance = mean of the channels × solid angle
     double total_ = 0;
     dvec3 fluence_{0};
     uint64_t brokenPixels_ = 0;

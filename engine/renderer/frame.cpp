@@ -7,7 +7,8 @@ namespace {
 
 TermSet directTerms(const FrameOrder& order) { return order.plan->termsOf(kDirectPasses); }
 
-SurfaceLight addSurfaceLight(fg::FrameGraph& graph, const FrameParts& parts, const FrameOrder& order, const GBuffer& gbuffer,
+SurfaceLight addSurfaceLight(fg::FrameGraph& graph, const FrameParts& parts,
+                             const FrameOrder& order, const GBuffer& gbuffer,
                              const LightResources& lights, const MediaResources& media) {
     SurfaceLightInputs inputs;
     inputs.view = order.view;
@@ -21,7 +22,8 @@ SurfaceLight addSurfaceLight(fg::FrameGraph& graph, const FrameParts& parts, con
     return addDeferredLightingPass(graph, inputs);
 }
 
-MediumMarch addMarch(fg::FrameGraph& graph, const FrameOrder& order, const MediaFrame& media, fg::TextureHandle depth, const LightResources& lights) {
+MediumMarch addMarch(fg::FrameGraph& graph, const FrameOrder& order, const MediaFrame& media,
+                     fg::TextureHandle depth, const LightResources& lights) {
     MediumMarchInputs inputs;
     inputs.view = order.view;
     inputs.depth = depth;
@@ -31,47 +33,61 @@ MediumMarch addMarch(fg::FrameGraph& graph, const FrameOrder& order, const Media
     return addMediumMarchPass(graph, media, inputs);
 }
 
-bool holds(const fg::FrameGraph& graph, fg::TextureHandle image) { return image && !graph.isAbsent(image); }
+bool holds(const fg::FrameGraph& graph, fg::TextureHandle image) {
+    return image && !graph.isAbsent(image);
+}
 
 /// The engine's own terms, as they reach the eye.
-TermImages addDirectTerms(fg::FrameGraph& graph, const SurfaceLight& surfaces, const MediumMarch& march) {
+TermImages addDirectTerms(fg::FrameGraph& graph, const SurfaceLight& surfaces,
+                          const MediumMarch& march) {
     TermImages images;
     if (holds(graph, surfaces.emission))
-        images.add(bit(Term::LE), addCompositePass(graph, "composite.LE", "term.LE", surfaces.emission, march.transmittance, march.emission));
+        images.add(bit(Term::LE),
+                   addCompositePass(graph, "composite.LE", "term.LE", surfaces.emission,
+                                    march.transmittance, march.emission));
     if (holds(graph, surfaces.direct))
-        images.add(bit(Term::LSE), addCompositePass(graph, "composite.LSE", "term.LSE", surfaces.direct, march.transmittance));
+        images.add(bit(Term::LSE), addCompositePass(graph, "composite.LSE", "term.LSE",
+                                                    surfaces.direct, march.transmittance));
     if (holds(graph, march.inScatter)) images.add(bit(Term::LVE), march.inScatter);
     return images;
 }
 
 /// Each technique computes the terms that the plan gives it.
-void addTechniques(fg::FrameGraph& graph, const FrameParts& parts, const FrameOrder& order, plugin::FrameInputs& inputs,
-                   fg::TextureHandle transmittance, TermImages& images) {
+void addTechniques(fg::FrameGraph& graph, const FrameParts& parts, const FrameOrder& order,
+                   plugin::FrameInputs& inputs, fg::TextureHandle transmittance,
+                   TermImages& images) {
     const auto techniques = parts.plugins.techniques();
     for (size_t i = 0; i < techniques.size(); ++i) {
         inputs.terms = order.plan->termsOf(int(i));
         if (inputs.terms == 0) continue;
-        const plugin::FrameOutputs outputs = parts.plugins.plugin(techniques[i].plugin).addPasses(graph, techniques[i].index, inputs);
+        const plugin::FrameOutputs outputs = parts.plugins.plugin(techniques[i].plugin)
+                                                 .addPasses(graph, techniques[i].index, inputs);
         if (holds(graph, outputs.surfaceRadiance))
             images.add(inputs.terms & kIndirectOnSurfaces,
-                       addCompositePass(graph, "composite.indirect", "term.indirectOnSurfaces", outputs.surfaceRadiance, transmittance));
-        if (holds(graph, outputs.inScatter)) images.add(inputs.terms & ~kIndirectOnSurfaces, outputs.inScatter);
+                       addCompositePass(graph, "composite.indirect", "term.indirectOnSurfaces",
+                                        outputs.surfaceRadiance, transmittance));
+        if (holds(graph, outputs.inScatter))
+            images.add(inputs.terms & ~kIndirectOnSurfaces, outputs.inScatter);
     }
 }
 
-fg::TextureHandle addPostEffects(fg::FrameGraph& graph, const FrameParts& parts, const plugin::FrameInputs& inputs, fg::TextureHandle color) {
-    for (size_t i = 0; i < parts.plugins.count(); ++i) color = parts.plugins.plugin(i).addPostPasses(graph, inputs, color);
+fg::TextureHandle addPostEffects(fg::FrameGraph& graph, const FrameParts& parts,
+                                 const plugin::FrameInputs& inputs, fg::TextureHandle color) {
+    for (size_t i = 0; i < parts.plugins.count(); ++i)
+        color = parts.plugins.plugin(i).addPostPasses(graph, inputs, color);
     return color;
 }
 
 /// Means over the frames so far of the sum and, where they are wanted, of each term.
 void addAverages(fg::FrameGraph& graph, const FrameOrder& order, FrameImages& images) {
-    static constexpr const char* kHistories[kMaxTermImages] = {"average.term0", "average.term1", "average.term2", "average.term3",
-                                                               "average.term4", "average.term5", "average.term6", "average.term7"};
+    static constexpr const char* kHistories[kMaxTermImages] = {
+        "average.term0", "average.term1", "average.term2", "average.term3",
+        "average.term4", "average.term5", "average.term6", "average.term7"};
     images.beauty = addAccumulatePass(graph, "average.beauty", images.beauty, order.averagedFrame);
     if (!order.separateTerms) return;
     for (uint32_t i = 0; i < images.terms.count; ++i)
-        images.terms.images[i].image = addAccumulatePass(graph, kHistories[i], images.terms.images[i].image, order.averagedFrame);
+        images.terms.images[i].image = addAccumulatePass(
+            graph, kHistories[i], images.terms.images[i].image, order.averagedFrame);
 }
 
 } // namespace
@@ -81,30 +97,35 @@ FrameImages recordFrame(fg::FrameGraph& graph, const FrameParts& parts, const Fr
 
     // What the eye sees, and what lights it.
     images.gbuffer = addGBufferPass(graph, parts.surfaces, order.view, parts.gbufferSettings);
-    MediaFrame media = parts.media.beginFrame(graph, {&order.view, order.surfaceBounds, parts.lights.lights(), false});
+    MediaFrame media = parts.media.beginFrame(
+        graph, {&order.view, order.surfaceBounds, parts.lights.lights(), false});
     addOpticalDepthPass(graph, parts.media, media);
     const LightResources lights = parts.lights.addPasses(graph, parts.surfaces, order.view);
 
     // Direct light on surfaces and in media.
-    const SurfaceLight surfaces = addSurfaceLight(graph, parts, order, images.gbuffer, lights, media.resources);
+    const SurfaceLight surfaces =
+        addSurfaceLight(graph, parts, order, images.gbuffer, lights, media.resources);
     const MediumMarch march = addMarch(graph, order, media, images.gbuffer.depth, lights);
     images.transmittance = march.transmittance;
     images.terms = addDirectTerms(graph, surfaces, march);
 
     // Indirect light, as far as techniques compute it.
-    plugin::FrameInputs inputs{order.view, images.gbuffer, lights, media.resources, order.sceneChange, 0};
+    plugin::FrameInputs inputs{order.view,      images.gbuffer,    lights,
+                               media.resources, order.sceneChange, 0};
     addTechniques(graph, parts, order, inputs, march.transmittance, images.terms);
 
     // Transparent surfaces, then the sum of all terms.
     images.terms = addBlendPass(graph, parts.blended,
-                                {order.view, images.gbuffer.depth, march.transmittance, lights, media.resources, &parts.environment, parts.surfaceLightSettings},
+                                {order.view, images.gbuffer.depth, march.transmittance, lights,
+                                 media.resources, &parts.environment, parts.surfaceLightSettings},
                                 images.terms);
     images.beauty = addSumPass(graph, images.terms, order.view.width, order.view.height);
     if (order.averagedFrame > 0) addAverages(graph, order, images);
 
     // A picture for people.
     images.beauty = addPostEffects(graph, parts, inputs, images.beauty);
-    const Display display = addTonemapPass(graph, images.beauty, order.ev100, parts.postSettings, order.view.data.seed);
+    const Display display =
+        addTonemapPass(graph, images.beauty, order.ev100, parts.postSettings, order.view.data.seed);
     images.display = display.image;
     images.invalidPixels = display.invalidPixels;
     return images;

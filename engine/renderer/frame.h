@@ -34,8 +34,9 @@ struct FrameOrder {
     const FramePlan* plan = nullptr;
     plugin::SceneChange sceneChange{};
     float ev100 = 0;
-    uint32_t averagedFrame = 0;     // 0: this frame stands alone; else its number in the average, from 1
-    bool separateTerms = false;     // an image a term is wanted
+    uint32_t averagedFrame =
+        0; // 0: this frame stands alone; else its number in the average, from 1
+    bool separateTerms = false;            // an image a term is wanted
     std::span<const Bounds> surfaceBounds; // of everything drawn, render space
 };
 
@@ -44,8 +45,9 @@ struct FrameImages {
     GBuffer gbuffer;
     fg::TextureHandle transmittance; // of the media before the surfaces; null in vacuum
     TermImages terms;                // averaged where the frame is
-    fg::TextureHandle beauty;        // their sum; averaged where the frame is, alpha then holds squared deviations
-    fg::TextureHandle display;       // RGBA8
+    fg::TextureHandle
+        beauty; // their sum; averaged where the frame is, alpha then holds squared deviations
+    fg::TextureHandle display; // RGBA8
     fg::BufferHandle invalidPixels;
 };
 

@@ -13,8 +13,9 @@ namespace tyndall {
 
 /// Deferred surfaces, view-sized. Depth is reversed: 0 where no surface is.
 struct GBuffer {
-    fg::TextureHandle depth;    // Depth32F
-    fg::TextureHandle normal;   // RG16Snorm ×2 packed as RGBA16: shading and geometric normal, octahedral
+    fg::TextureHandle depth; // Depth32F
+    fg::TextureHandle
+        normal; // RG16Snorm ×2 packed as RGBA16: shading and geometric normal, octahedral
     fg::TextureHandle base;     // RGBA16: base colour, metallic
     fg::TextureHandle material; // RGBA16: roughness, specular, occlusion, flags
     fg::TextureHandle emissive; // RGBA32F: nits
@@ -22,35 +23,50 @@ struct GBuffer {
 
 /// Lights, their clusters, shadow maps and light-space optical depth.
 struct LightResources {
-    fg::BufferHandle lights;        // LightData[]
-    fg::BufferHandle clusters;      // offsets and counts, then light indices (shaders/lighting/clusters.glsl)
-    fg::BufferHandle shadowViews;   // ShadowView[]
-    fg::TextureHandle shadowAtlas;  // Depth32F array
-    fg::TextureHandle opticalDepth; // light-space optical depth of the grid media; absent without grids
+    fg::BufferHandle lights; // LightData[]
+    fg::BufferHandle
+        clusters; // offsets and counts, then light indices (shaders/lighting/clusters.glsl)
+    fg::BufferHandle shadowViews;  // ShadowView[]
+    fg::TextureHandle shadowAtlas; // Depth32F array
+    fg::TextureHandle
+        opticalDepth; // light-space optical depth of the grid media; absent without grids
     fg::BufferHandle opticalDepthViews;
-    uint32_t lightCount = 0;        // with environment samples
+    uint32_t lightCount = 0; // with environment samples
+    uint32_t sceneLightCount = 0; // without them
+    bool softShadows = true; // the define SOFT_SHADOWS: a shadow of this frame has a penumbra that is looked for
 };
 
 struct MediaResources {
-    fg::BufferHandle media;     // MediaHeader, then MediumData[]
-    fg::BufferHandle bricks;    // BrickData[] of all grids
-    fg::BufferHandle blackbody; // radiance by temperature
-    fg::StaticTexture atlas;    // R32F 3D: brick samples of density and temperature grids
+    fg::BufferHandle media;             // MediaHeader, then MediumData[]
+    fg::BufferHandle bricks;            // BrickData[] of all grids
+    fg::BufferHandle blackbody;         // radiance by temperature
+    fg::StaticTexture atlas;            // R32F 3D: brick samples of density and temperature grids
     fg::BufferHandle opticalDepthViews; // OpticalDepthView[], by light
-    fg::TextureHandle opticalDepth;     // light-space optical depth of the grids; null where no light has a volume
-    fg::StaticTexture noOpticalDepth;   // bound in its place then
-    uint32_t count = 0;            // media that can be seen or can shade what is seen; 0: bind nothing, include nothing
-    uint32_t kinds = 0;            // the define MEDIA_KINDS: kMediaShapes and so on in shared/medium.h
-    uint32_t phaseGroups = 1;      // the define PHASE_GROUPS: 1 where one phase function is enough, else 8
+    fg::TextureHandle
+        opticalDepth; // light-space optical depth of the grids; null where no light has a volume
+    fg::StaticTexture noOpticalDepth; // bound in its place then
+    uint32_t count =
+        0; // media that can be seen or can shade what is seen; 0: bind nothing, include nothing
+    uint32_t kinds = 0; // the define MEDIA_KINDS: kMediaShapes and so on in shared/medium.h
+    uint32_t phaseGroups =
+        1; // the define PHASE_GROUPS: 1 where one phase function is enough, else 8
 };
+
+/// The define MEDIA_KINDS for a shader; `towardsLights`: it asks for optical depth towards lights. Some combinations share
+/// a variant, so that there are not too many.
+inline int32_t mediaKinds(const MediaResources& media, bool towardsLights) {
+    uint32_t kinds = media.kinds;
+    if (!towardsLights || (kinds & gpu::kMediaExactGrids) != 0) kinds &= ~gpu::kMediaLightVolumes;
+    if (media.phaseGroups > 1 && (kinds & gpu::kMediaGrids) != 0) kinds |= gpu::kMediaShapes;
+    return int32_t(kinds);
+}
 
 struct ViewResources {
     gpu::ViewData data;
     int32_t width = 0, height = 0;
 };
 
-template <typename Command>
-Command& bindView(Command& command, const ViewResources& view) {
+template <typename Command> Command& bindView(Command& command, const ViewResources& view) {
     return command.params(view.data, "View");
 }
 
@@ -67,10 +83,12 @@ inline MediaResources readMedia(fg::Builder& builder, const MediaResources& medi
 }
 
 /// Binds everything that the media's shaders name. `media` comes from readMedia(). Names that a shader does not use are ignored.
-template <typename Command>
-Command& bindMedia(Command& command, const MediaResources& media) {
-    command.bind("Media", media.media).bind("Bricks", media.bricks).bind("Blackbody", media.blackbody)
-        .bind("OpticalDepthViews", media.opticalDepthViews).bind("mediumAtlas", media.atlas);
+template <typename Command> Command& bindMedia(Command& command, const MediaResources& media) {
+    command.bind("Media", media.media)
+        .bind("Bricks", media.bricks)
+        .bind("Blackbody", media.blackbody)
+        .bind("OpticalDepthViews", media.opticalDepthViews)
+        .bind("mediumAtlas", media.atlas);
     if (media.opticalDepth) return command.bind("lightOpticalDepth", media.opticalDepth);
     return command.bind("lightOpticalDepth", media.noOpticalDepth);
 }
@@ -93,8 +111,7 @@ Command& bindLightLists(Command& command, const LightResources& lights) {
 
 /// For shaders that include lighting/light.glsl and lighting/shadow.glsl; `lights` from readLights(). Light-space optical depth
 /// is bound by who uses it.
-template <typename Command>
-Command& bindLights(Command& command, const LightResources& lights) {
+template <typename Command> Command& bindLights(Command& command, const LightResources& lights) {
     command.bind("Lights", lights.lights);
     if (lights.shadowViews) command.bind("ShadowViews", lights.shadowViews);
     if (lights.shadowAtlas) command.bind("shadowAtlas", lights.shadowAtlas);

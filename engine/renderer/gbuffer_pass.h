@@ -10,7 +10,8 @@ namespace tyndall {
 
 /// Opaque and alpha-tested surfaces, lines and points of `scene` as the camera sees them. Where nothing is, depth is 0.
 /// `scene` must stay unchanged until the graph was executed.
-GBuffer addGBufferPass(fg::FrameGraph& graph, const GpuScene& scene, const ViewResources& view, const GBufferSettings& settings);
+GBuffer addGBufferPass(fg::FrameGraph& graph, const GpuScene& scene, const ViewResources& view,
+                       const GBufferSettings& settings);
 
 /// Binds the five textures of a material; the names are those of shaders/gbuffer/surface.glsl.
 inline void bindMaterial(fg::PassContext& context, const MaterialTextures& textures) {

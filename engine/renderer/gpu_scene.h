@@ -22,12 +22,13 @@ struct DrawItem {
     fg::StaticGeometry geometry;
     uint32_t indexCount = 0;
     uint32_t object = 0;
-    uint32_t material = 0;  // index into `Materials` and GpuScene::textures(); the last one is the default material
+    uint32_t material =
+        0; // index into `Materials` and GpuScene::textures(); the last one is the default material
     fg::Topology topology = fg::Topology::Triangles;
     AlphaMode alphaMode = AlphaMode::Opaque;
     bool doubleSided = false;
-    bool mirrored = false;  // determinant < 0: front faces are clockwise
-    Bounds bounds;          // render space, metres
+    bool mirrored = false; // determinant < 0: front faces are clockwise
+    Bounds bounds;         // render space, metres
     int32_t mesh = kNone, node = kNone, instance = 0;
 };
 
@@ -64,7 +65,9 @@ public:
     [[nodiscard]] std::span<const DrawItem> items() const { return items_; }
     /// The part of items() with this alpha mode.
     [[nodiscard]] std::span<const DrawItem> items(AlphaMode mode) const;
-    [[nodiscard]] const MaterialTextures& textures(uint32_t material) const { return materialTextures_.at(material); }
+    [[nodiscard]] const MaterialTextures& textures(uint32_t material) const {
+        return materialTextures_.at(material);
+    }
     [[nodiscard]] fg::StaticBuffer objects() const { return objects_; }     // `Objects`
     [[nodiscard]] fg::StaticBuffer materials() const { return materials_; } // `Materials`
     [[nodiscard]] std::span<const gpu::ObjectData> objectData() const { return objectData_; }
@@ -105,7 +108,8 @@ void forEachVisibleRun(std::span<const DrawItem> items, std::span<const vec4> pl
     DrawRun run;
     for (const DrawItem& item : items) {
         if (!mayBeInside(item.bounds, planes)) continue;
-        const bool continues = run.count > 0 && item.mesh == run.first->mesh && item.mirrored == run.first->mirrored &&
+        const bool continues = run.count > 0 && item.mesh == run.first->mesh &&
+                               item.mirrored == run.first->mirrored &&
                                item.object == run.first->object + run.count;
         if (!continues) {
             if (run.count > 0) draw(run);

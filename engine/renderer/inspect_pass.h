@@ -17,6 +17,7 @@ std::span<const SettingDesc> inspectSettings();
 
 /// `resource` (float or normalised) stretched over width × height: RGBA8; non-finite texels are magenta.
 /// Slice and mip are clamped to what there is.
-fg::TextureHandle addInspectPass(fg::FrameGraph& graph, fg::TextureHandle resource, int width, int height, const InspectSettings& settings);
+fg::TextureHandle addInspectPass(fg::FrameGraph& graph, fg::TextureHandle resource, int width,
+                                 int height, const InspectSettings& settings);
 
 } // namespace tyndall

@@ -12,11 +12,13 @@
 namespace tyndall {
 namespace {
 
-constexpr double kNearestPart = 1e-5;  // of the scene's radius: no inverse square below it
-constexpr size_t kManyLights = 64;     // up to so many, the cutoff drops nothing
-constexpr float kWidestDisc = 1.5f;    // radians: a sun's angular radius stays below a half-space
+constexpr double kNearestPart = 1e-5; // of the scene's radius: no inverse square below it
+constexpr size_t kManyLights = 64;    // up to so many, the cutoff drops nothing
+constexpr float kWidestDisc = 1.5f;   // radians: a sun's angular radius stays below a half-space
 
-bool finite(const dvec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
+bool finite(const dvec3& v) {
+    return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+}
 
 uint32_t shaderType(LightType type) {
     switch (type) {
@@ -37,19 +39,24 @@ dvec2 framePoint(const gpu::ViewData& view, uint32_t light) {
 void setSamplePoint(gpu::LightData& light, const dvec2& u) {
     const double radius = double(light.direction.w);
     if (light.type == gpu::kLightRect) {
-        const dvec3 point = dvec3(light.position) + (2.0 * u.x - 1.0) * dvec3(light.axisX) + (2.0 * u.y - 1.0) * dvec3(light.axisY);
+        const dvec3 point = dvec3(light.position) + (2.0 * u.x - 1.0) * dvec3(light.axisX) +
+                            (2.0 * u.y - 1.0) * dvec3(light.axisY);
         light.samplePoint = vec4(vec3(point), 1.0f);
     } else if (radius > 0) {
         // Uniform over the ball's surface; over the sun's disc, by solid angle.
         const bool sun = light.type == gpu::kLightDirectional;
         const double lowest = sun ? std::cos(radius) : -1.0;
-        const double z = 1.0 - u.x * (1.0 - lowest), s = std::sqrt(std::max(0.0, 1.0 - z * z)), azimuth = 2.0 * kPi * u.y;
+        const double z = 1.0 - u.x * (1.0 - lowest), s = std::sqrt(std::max(0.0, 1.0 - z * z)),
+                     azimuth = 2.0 * kPi * u.y;
         dvec3 axis = dvec3(light.direction);
         if (glm::length(axis) < 0.5) axis = dvec3(0, 0, -1);
-        const dvec3 x = glm::normalize(glm::cross(axis, std::abs(axis.y) < 0.9 ? dvec3(0, 1, 0) : dvec3(1, 0, 0)));
+        const dvec3 x = glm::normalize(
+            glm::cross(axis, std::abs(axis.y) < 0.9 ? dvec3(0, 1, 0) : dvec3(1, 0, 0)));
         const dvec3 y = glm::cross(axis, x);
-        const dvec3 direction = glm::normalize(x * (s * std::cos(azimuth)) + y * (s * std::sin(azimuth)) + axis * z);
-        light.samplePoint = vec4(vec3(sun ? direction : dvec3(light.position) + radius * direction), 1.0f);
+        const dvec3 direction =
+            glm::normalize(x * (s * std::cos(azimuth)) + y * (s * std::sin(azimuth)) + axis * z);
+        light.samplePoint =
+            vec4(vec3(sun ? direction : dvec3(light.position) + radius * direction), 1.0f);
         // A disc of constant radiance gives E on a surface that faces its centre: its mean is 2E/(1 + cos) by solid angle.
         if (sun) light.intensity *= vec4(vec3(float(2.0 / (1.0 + lowest))), 1.0f);
     }
@@ -63,7 +70,8 @@ void LightSystem::registerSettings(SettingsRegistry& registry) {
     registry.addPreset(lightPresets());
 }
 
-void LightSystem::collectLight(const Light& light, const dmat4& worldFromNode, int node, const dvec3& origin) {
+void LightSystem::collectLight(const Light& light, const dmat4& worldFromNode, int node,
+                               const dvec3& origin) {
     const auto leaveOut = [&](const char* why) {
         sceneNotes_.push_back(fmt::format("light '{}' is left out: {}", light.name, why));
     };
@@ -85,7 +93,8 @@ void LightSystem::collectLight(const Light& light, const dmat4& worldFromNode, i
     data.intensity = vec4(vec3(power), 0);
     c.strength = std::max({power.x, power.y, power.z});
     if (rect) {
-        const dvec3 x = 0.5 * double(light.size.x) * dvec3(worldFromNode[0]), y = 0.5 * double(light.size.y) * dvec3(worldFromNode[1]);
+        const dvec3 x = 0.5 * double(light.size.x) * dvec3(worldFromNode[0]),
+                    y = 0.5 * double(light.size.y) * dvec3(worldFromNode[1]);
         const dvec3 normal = glm::cross(x, y);
         const double quarter = glm::length(normal);
         if (!(quarter > 0) || !std::isfinite(quarter)) return leaveOut("its area is zero");
@@ -99,9 +108,13 @@ void LightSystem::collectLight(const Light& light, const dmat4& worldFromNode, i
     }
     const double length = glm::length(forward);
     const bool needsDirection = light.type != LightType::Point;
-    if (needsDirection && !(length > 0 && std::isfinite(length))) return leaveOut("its node's scale leaves it no direction");
-    data.direction = vec4(length > 0 && std::isfinite(length) ? vec3(forward / length) : vec3(0, 0, -1), rect ? 0 : std::max(light.radius, 0.0f));
-    if (light.type == LightType::Directional) data.direction.w = std::min(data.direction.w, kWidestDisc);
+    if (needsDirection && !(length > 0 && std::isfinite(length)))
+        return leaveOut("its node's scale leaves it no direction");
+    data.direction =
+        vec4(length > 0 && std::isfinite(length) ? vec3(forward / length) : vec3(0, 0, -1),
+             rect ? 0 : std::max(light.radius, 0.0f));
+    if (light.type == LightType::Directional)
+        data.direction.w = std::min(data.direction.w, kWidestDisc);
     if (light.type == LightType::Spot) {
         const double outer = std::clamp(double(light.outerConeAngle), 0.0, kPi / 2);
         if (!(outer > 0)) return leaveOut("its cone is closed");
@@ -115,8 +128,10 @@ void LightSystem::collectLight(const Light& light, const dmat4& worldFromNode, i
 void LightSystem::collect(const LightFrame& frame) {
     const Scene& scene = *frame.scene;
     const SceneVersions& now = scene.versions;
-    if (scene_ != &scene || seen_.structure != now.structure || seen_.transforms != now.transforms || seen_.lights != now.lights ||
-        seen_.meshes != now.meshes || seen_.media != now.media || seenOrigin_ != frame.renderOrigin) {
+    if (scene_ != &scene || seen_.structure != now.structure ||
+        seen_.transforms != now.transforms || seen_.lights != now.lights ||
+        seen_.meshes != now.meshes || seen_.media != now.media ||
+        seenOrigin_ != frame.renderOrigin) {
         seen_ = now;
         seenOrigin_ = frame.renderOrigin;
         collected_.clear();
@@ -128,14 +143,17 @@ void LightSystem::collect(const LightFrame& frame) {
             const int light = scene.nodes[size_t(node)].light;
             if (light == kNone || !visible[size_t(node)]) continue;
             const size_t before = collected_.size();
-            collectLight(scene.lights.at(size_t(light)), transforms[size_t(node)], node, frame.renderOrigin);
+            collectLight(scene.lights.at(size_t(light)), transforms[size_t(node)], node,
+                         frame.renderOrigin);
             if (collected_.size() > before && collected_.back().data.type != gpu::kLightDirectional)
                 bounds.include(dvec3(transforms[size_t(node)][3]));
         }
         sceneRadius_ = bounds.empty() ? 0.0 : 0.5 * glm::length(bounds.extent());
-        if (!(sceneRadius_ > 0) || !std::isfinite(sceneRadius_)) sceneRadius_ = std::max(double(frame.view->data.cameraForward.w), 1e-6);
+        if (!(sceneRadius_ > 0) || !std::isfinite(sceneRadius_))
+            sceneRadius_ = std::max(double(frame.view->data.cameraForward.w), 1e-6);
         for (Collected& c : collected_)
-            if (c.data.type == gpu::kLightPoint || c.data.type == gpu::kLightSpot) c.data.intensity.w = float(kNearestPart * sceneRadius_);
+            if (c.data.type == gpu::kLightPoint || c.data.type == gpu::kLightSpot)
+                c.data.intensity.w = float(kNearestPart * sceneRadius_);
     }
     if (scene_ != &scene || seenEnvironment_ != scene.environment.version) {
         seenEnvironment_ = scene.environment.version;
@@ -148,8 +166,10 @@ void LightSystem::addEnvironment(const LightFrame& frame, std::vector<Collected>
     if (environment_.black()) return;
     const gpu::ViewData& view = frame.view->data;
     const bool converge = (view.flags & gpu::kViewConverge) != 0;
-    for (const EnvironmentLight& light : converge ? environment_.sample(lightSettings_.environmentLights, view.frameIndex, view.seed)
-                                                  : environment_.lights(lightSettings_.environmentLights)) {
+    for (const EnvironmentLight& light :
+         converge
+             ? environment_.sample(lightSettings_.environmentLights, view.frameIndex, view.seed)
+             : environment_.lights(lightSettings_.environmentLights)) {
         Collected c;
         c.data.type = gpu::kLightDirectional;
         c.data.flags = gpu::kLightFromEnvironment;
@@ -169,41 +189,54 @@ void LightSystem::setReach(std::vector<Collected>& all, bool converge) const {
     for (const Collected& c : all)
         if (c.data.type != gpu::kLightDirectional) ++local, strength += c.strength;
     if (converge || !(lightSettings_.cutoff > 0) || local <= kManyLights) return;
-    const double least = double(lightSettings_.cutoff) * strength / (sceneRadius_ * sceneRadius_) / double(local);
+    const double least =
+        double(lightSettings_.cutoff) * strength / (sceneRadius_ * sceneRadius_) / double(local);
     for (Collected& c : all) {
         if (c.data.type == gpu::kLightDirectional) continue;
-        const double size = c.data.type == gpu::kLightRect ? double(glm::length(vec3(c.data.axisX)) + glm::length(vec3(c.data.axisY)))
-                                                           : double(c.data.direction.w);
+        const double size =
+            c.data.type == gpu::kLightRect
+                ? double(glm::length(vec3(c.data.axisX)) + glm::length(vec3(c.data.axisY)))
+                : double(c.data.direction.w);
         const double reach = std::sqrt(c.strength / least) + size;
         if (c.reach <= 0 || reach < double(c.reach)) c.reach = float(reach);
     }
 }
 
 void LightSystem::chooseShadows(const LightFrame& frame, const std::vector<Collected>& all) {
-    struct Candidate { uint32_t light; double score; };
+    struct Candidate {
+        uint32_t light;
+        double score;
+    };
     std::vector<Candidate> candidates;
     std::vector<uint32_t> chosen;
     const dvec3 eye(frame.view->data.cameraPosition);
     for (uint32_t i = 0; i < all.size(); ++i) {
         if (!all[i].castsShadows || (lights_[i].flags & gpu::kLightFromEnvironment) != 0) continue;
-        const double distance = std::max(glm::length(dvec3(lights_[i].position) - eye), 1e-2 * sceneRadius_);
+        const double distance =
+            std::max(glm::length(dvec3(lights_[i].position) - eye), 1e-2 * sceneRadius_);
         const bool directional = lights_[i].type == gpu::kLightDirectional;
-        candidates.push_back({i, directional ? all[i].strength : all[i].strength / (distance * distance)});
+        candidates.push_back(
+            {i, directional ? all[i].strength : all[i].strength / (distance * distance)});
     }
-    std::stable_sort(candidates.begin(), candidates.end(), [](const Candidate& a, const Candidate& b) { return a.score > b.score; });
+    std::stable_sort(candidates.begin(), candidates.end(),
+                     [](const Candidate& a, const Candidate& b) { return a.score > b.score; });
     const size_t most = size_t(std::max(shadowSettings_.maxLights, 0));
     if (shadowSettings_.enabled && !frame.casters.empty() && candidates.size() > most)
-        notes_.push_back(fmt::format("{} of {} lights cast no shadows: shadows.maxLights is {}", candidates.size() - most, candidates.size(), most));
-    for (size_t i = 0; i < std::min(candidates.size(), most); ++i) chosen.push_back(candidates[i].light);
+        notes_.push_back(fmt::format("{} of {} lights cast no shadows: shadows.maxLights is {}",
+                                     candidates.size() - most, candidates.size(), most));
+    for (size_t i = 0; i < std::min(candidates.size(), most); ++i)
+        chosen.push_back(candidates[i].light);
     for (uint32_t i = 0; i < all.size(); ++i)
         if ((lights_[i].flags & gpu::kLightFromEnvironment) != 0) chosen.push_back(i);
     plan_ = planShadows(lights_, chosen, {frame.casters, frame.view}, shadowSettings_);
     if (plan_.lightsDropped > 0)
-        notes_.push_back(fmt::format("{} lights cast no shadows: their maps do not fit into shadows.atlasLayers = {} layers", plan_.lightsDropped,
-                                     shadowSettings_.atlasLayers));
+        notes_.push_back(fmt::format(
+            "{} lights cast no shadows: their maps do not fit into shadows.atlasLayers = {} layers",
+            plan_.lightsDropped, shadowSettings_.atlasLayers));
     else if (plan_.shrunk > 0)
-        notes_.push_back(fmt::format("shadow maps are {} times smaller than set, to fit into shadows.atlasLayers = {} layers", 1 << plan_.shrunk,
-                                     shadowSettings_.atlasLayers));
+        notes_.push_back(fmt::format(
+            "shadow maps are {} times smaller than set, to fit into shadows.atlasLayers = {} layers",
+            1 << plan_.shrunk, shadowSettings_.atlasLayers));
 }
 
 void LightSystem::update(const LightFrame& frame) {
@@ -211,7 +244,9 @@ void LightSystem::update(const LightFrame& frame) {
     collect(frame);
     notes_ = sceneNotes_;
     if (environment_.brokenPixels() > 0)
-        notes_.push_back(fmt::format("{} pixels of the environment are negative or not finite, and count as black", environment_.brokenPixels()));
+        notes_.push_back(fmt::format(
+            "{} pixels of the environment are negative or not finite, and count as black",
+            environment_.brokenPixels()));
     const bool converge = (frame.view->data.flags & gpu::kViewConverge) != 0;
     std::vector<Collected> all = collected_;
     addEnvironment(frame, all);
@@ -228,13 +263,16 @@ void LightSystem::update(const LightFrame& frame) {
         if (converge) setSamplePoint(data, framePoint(frame.view->data, uint32_t(c.node)));
         lights_.push_back(data);
         nodes_.push_back(c.node);
-        if (c.reach <= 0) ++globalCount_;
-        else balls_.push_back(vec4(vec3(data.position), c.reach + data.direction.w));
+        if (c.reach <= 0)
+            ++globalCount_;
+        else
+            balls_.push_back(vec4(vec3(data.position), c.reach + data.direction.w));
     }
     chooseShadows(frame, all);
 }
 
-LightResources LightSystem::addPasses(fg::FrameGraph& graph, const GpuScene& scene, const ViewResources& view) {
+LightResources LightSystem::addPasses(fg::FrameGraph& graph, const GpuScene& scene,
+                                      const ViewResources& view) {
     struct Data {
         fg::BufferHandle lights;
         const gpu::LightData* data;
@@ -242,20 +280,37 @@ LightResources LightSystem::addPasses(fg::FrameGraph& graph, const GpuScene& sce
     };
     LightResources resources;
     resources.lightCount = uint32_t(lights_.size());
+    resources.sceneLightCount =
+        uint32_t(std::count_if(lights_.begin(), lights_.end(), [](const gpu::LightData& light) {
+            return (light.flags & gpu::kLightFromEnvironment) == 0;
+        }));
+    resources.softShadows =
+        (view.data.flags & gpu::kViewConverge) == 0 &&
+        std::any_of(plan_.views.begin(), plan_.views.end(),
+                    [](const gpu::ShadowView& shadow) { return shadow.searchTaps > 0; });
     uint64_t key = fg::kHashStart;
     const auto* words = reinterpret_cast<const unsigned char*>(lights_.data());
-    key = fg::hashName({reinterpret_cast<const char*>(words), lights_.size() * sizeof(gpu::LightData)}, key);
-    resources.lights = graph.addPass<Data>("lights.upload",
-        [&](fg::Builder& builder, Data& data) {
-            data.data = lights_.data();
-            data.bytes = lights_.size() * sizeof(gpu::LightData);
-            data.lights = builder.create("lights", fg::BufferDesc{std::max(data.bytes, sizeof(gpu::LightData))}, fg::Access::TransferWrite);
-            builder.cacheBy(key);
-        },
-        [](const Data& data, fg::PassContext& context) {
-            if (data.bytes > 0) context.upload(data.lights, 0, data.data, data.bytes);
-            else context.clearBuffer(data.lights, 0);
-        }).lights;
+    key = fg::hashName(
+        {reinterpret_cast<const char*>(words), lights_.size() * sizeof(gpu::LightData)}, key);
+    resources.lights =
+        graph
+            .addPass<Data>(
+                "lights.upload",
+                [&](fg::Builder& builder, Data& data) {
+                    data.data = lights_.data();
+                    data.bytes = lights_.size() * sizeof(gpu::LightData);
+                    data.lights = builder.create(
+                        "lights", fg::BufferDesc{std::max(data.bytes, sizeof(gpu::LightData))},
+                        fg::Access::TransferWrite);
+                    builder.cacheBy(key);
+                },
+                [](const Data& data, fg::PassContext& context) {
+                    if (data.bytes > 0)
+                        context.upload(data.lights, 0, data.data, data.bytes);
+                    else
+                        context.clearBuffer(data.lights, 0);
+                })
+            .lights;
     const ShadowResources shadows = shadows_.addPasses(graph, scene, plan_, view);
     resources.shadowAtlas = shadows.atlas;
     resources.shadowViews = shadows.views;

@@ -26,8 +26,8 @@ class GpuScene;
 /// What one frame's lights follow from.
 struct LightFrame {
     const Scene* scene = nullptr;
-    dvec3 renderOrigin{0};               // world
-    Bounds casters;                      // of the surfaces that may cast shadows, render space; empty without
+    dvec3 renderOrigin{0}; // world
+    Bounds casters;        // of the surfaces that may cast shadows, render space; empty without
     const ViewResources* view = nullptr; // its flags say whether frames are averaged
 };
 
@@ -57,7 +57,8 @@ public:
     [[nodiscard]] const std::vector<std::string>& notes() const { return notes_; }
 
     /// Uploads, draws and lists. The frame's update() must have been called; `scene` is read when the graph runs.
-    LightResources addPasses(fg::FrameGraph& graph, const GpuScene& scene, const ViewResources& view);
+    LightResources addPasses(fg::FrameGraph& graph, const GpuScene& scene,
+                             const ViewResources& view);
 
 private:
     struct Collected {
@@ -68,7 +69,8 @@ private:
         float reach = 0;     // metres from its centre; 0: everywhere
     };
     void collect(const LightFrame& frame);
-    void collectLight(const Light& light, const dmat4& worldFromNode, int node, const dvec3& origin);
+    void collectLight(const Light& light, const dmat4& worldFromNode, int node,
+                      const dvec3& origin);
     void addEnvironment(const LightFrame& frame, std::vector<Collected>& all);
     void setReach(std::vector<Collected>& all, bool converge) const;
     void chooseShadows(const LightFrame& frame, const std::vector<Collected>& all);

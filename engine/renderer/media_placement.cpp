@@ -8,7 +8,8 @@
 namespace tyndall {
 namespace {
 
-constexpr double kEndless = 1e30; // metres: beyond every scene, and squares of it fit in double precision
+constexpr double kEndless =
+    1e30; // metres: beyond every scene, and squares of it fit in double precision
 
 Bounds endlessBounds() {
     Bounds bounds;
@@ -41,7 +42,8 @@ bool invert(const dmat4& matrix, dmat4& inverse) {
 dmat4 heightFromRender(const dmat4& renderFromNode) {
     dvec3 up = glm::normalize(dvec3(renderFromNode[1]));
     if (!std::isfinite(up.x)) up = dvec3(0, 1, 0);
-    const dvec3 side = glm::normalize(glm::cross(up, std::abs(up.x) < 0.9 ? dvec3(1, 0, 0) : dvec3(0, 0, 1)));
+    const dvec3 side =
+        glm::normalize(glm::cross(up, std::abs(up.x) < 0.9 ? dvec3(1, 0, 0) : dvec3(0, 0, 1)));
     const dvec3 other = glm::cross(side, up);
     const dvec3 origin(renderFromNode[3]);
     dmat4 m(1.0);
@@ -62,7 +64,9 @@ bool placeGrid(const dmat4& renderFromNode, PlacedMedium& placed) {
     if (!invert(renderFromCell, inverse)) return false;
     placed.data.localFromRender = mat4(inverse);
     placed.data.gridBricks = ivec4(grid.brickCount, 0);
-    const double edges[3] = {glm::length(dvec3(renderFromCell[0])), glm::length(dvec3(renderFromCell[1])), glm::length(dvec3(renderFromCell[2]))};
+    const double edges[3] = {glm::length(dvec3(renderFromCell[0])),
+                             glm::length(dvec3(renderFromCell[1])),
+                             glm::length(dvec3(renderFromCell[2]))};
     placed.data.voxelSize = float(*std::min_element(edges, edges + 3));
     Bounds cells;
     cells.include(dvec3(0));
@@ -71,7 +75,8 @@ bool placeGrid(const dmat4& renderFromNode, PlacedMedium& placed) {
     const Medium& medium = *placed.medium;
     if (medium.temperatureScale > 0 && medium.temperature && !medium.temperature->bricks.empty()) {
         dmat4 cellFromRender;
-        if (!invert(renderFromCells(renderFromNode, *medium.temperature), cellFromRender)) return true;
+        if (!invert(renderFromCells(renderFromNode, *medium.temperature), cellFromRender))
+            return true;
         placed.data.temperatureFromRender = mat4(cellFromRender);
         placed.data.temperatureBricks = ivec4(medium.temperature->brickCount, 0);
         placed.data.emission.w = medium.temperatureScale;
@@ -107,7 +112,8 @@ bool placeShape(const dmat4& renderFromNode, PlacedMedium& placed) {
 bool anyPositive(const vec3& v) { return v.x > 0 || v.y > 0 || v.z > 0; }
 
 bool hasEffect(const Medium& medium) {
-    const bool glows = anyPositive(medium.emission) || (medium.temperatureScale > 0 && medium.temperature);
+    const bool glows =
+        anyPositive(medium.emission) || (medium.temperatureScale > 0 && medium.temperature);
     if (!anyPositive(medium.extinction()) && !glows) return false;
     if (medium.kind != MediumKind::Grid) return true;
     return medium.density && medium.density->maximum > 0;
@@ -125,15 +131,18 @@ bool mayBeSeen(const Bounds& box, const std::vector<dvec4>& planes) {
     if (box.empty()) return false;
     return std::all_of(planes.begin(), planes.end(), [&](const dvec4& plane) {
         // The corner that is farthest inside.
-        const dvec3 corner(plane.x > 0 ? box.maximum.x : box.minimum.x, plane.y > 0 ? box.maximum.y : box.minimum.y,
+        const dvec3 corner(plane.x > 0 ? box.maximum.x : box.minimum.x,
+                           plane.y > 0 ? box.maximum.y : box.minimum.y,
                            plane.z > 0 ? box.maximum.z : box.minimum.z);
         // A millionth of slack for the planes, which come from single precision.
-        return glm::dot(dvec3(plane), corner) + plane.w >= -1e-6 * (glm::dot(glm::abs(dvec3(plane)), glm::abs(corner)) + std::abs(plane.w));
+        return glm::dot(dvec3(plane), corner) + plane.w >=
+               -1e-6 * (glm::dot(glm::abs(dvec3(plane)), glm::abs(corner)) + std::abs(plane.w));
     });
 }
 
 bool overlap(const Bounds& a, const Bounds& b) {
-    return glm::all(glm::lessThanEqual(a.minimum, b.maximum)) && glm::all(glm::lessThanEqual(b.minimum, a.maximum));
+    return glm::all(glm::lessThanEqual(a.minimum, b.maximum)) &&
+           glm::all(glm::lessThanEqual(b.minimum, a.maximum));
 }
 
 /// Can `medium` meet the box `seen` moved any way against `travel`?
@@ -141,7 +150,8 @@ bool upstream(const Bounds& medium, const Bounds& seen, const dvec3& travel) {
     double t0 = 0, t1 = std::numeric_limits<double>::infinity();
     for (int axis = 0; axis < 3; ++axis) {
         const double d = -travel[axis];
-        const double low = medium.minimum[axis] - seen.maximum[axis], high = medium.maximum[axis] - seen.minimum[axis];
+        const double low = medium.minimum[axis] - seen.maximum[axis],
+                     high = medium.maximum[axis] - seen.minimum[axis];
         if (std::abs(d) < 1e-12) {
             if (low > 0 || high < 0) return false;
             continue;
@@ -155,7 +165,8 @@ bool upstream(const Bounds& medium, const Bounds& seen, const dvec3& travel) {
 bool onPathOf(const gpu::LightData& light, const Bounds& medium, const Bounds& seen) {
     const vec4 sample = light.samplePoint;
     if (light.type == gpu::kLightDirectional)
-        return upstream(medium, seen, dvec3(light.direction)) || (sample.w > 0 && upstream(medium, seen, dvec3(sample)));
+        return upstream(medium, seen, dvec3(light.direction)) ||
+               (sample.w > 0 && upstream(medium, seen, dvec3(sample)));
     const dvec3 centre(light.position);
     dvec3 extent = glm::abs(dvec3(light.axisX)) + glm::abs(dvec3(light.axisY));
     if (light.type != gpu::kLightRect) extent = dvec3(double(light.direction.w));
@@ -175,7 +186,8 @@ bool onPathOf(const gpu::LightData& light, const Bounds& medium, const Bounds& s
 
 } // namespace
 
-std::vector<PlacedMedium> placeMedia(const Scene& scene, const dvec3& renderOrigin, std::vector<std::string>& notes) {
+std::vector<PlacedMedium> placeMedia(const Scene& scene, const dvec3& renderOrigin,
+                                     std::vector<std::string>& notes) {
     std::vector<PlacedMedium> placed;
     const std::vector<dmat4> world = scene.worldTransforms();
     const std::vector<bool> visible = scene.worldVisibility();
@@ -183,7 +195,8 @@ std::vector<PlacedMedium> placeMedia(const Scene& scene, const dvec3& renderOrig
         if (scene.nodes[i].medium == kNone || !visible[i]) continue;
         const Medium& medium = scene.media.at(size_t(scene.nodes[i].medium));
         if (medium.kind == MediumKind::Particles) {
-            notes.push_back("medium '" + medium.name + "' is made of particles, which this renderer does not draw");
+            notes.push_back("medium '" + medium.name +
+                            "' is made of particles, which this renderer does not draw");
             continue;
         }
         if (!hasEffect(medium)) continue;
@@ -195,10 +208,14 @@ std::vector<PlacedMedium> placeMedia(const Scene& scene, const dvec3& renderOrig
         entry.data.extinction = vec4(medium.extinction(), float(medium.scaleHeight));
         entry.data.emission = vec4(medium.emission, 0);
         const dmat4 renderFromNode = glm::translate(dmat4(1.0), -renderOrigin) * world[i];
-        if (placeShape(renderFromNode, entry)) placed.push_back(entry);
-        else notes.push_back("medium '" + medium.name + "' has no volume: its size or a scale above it is 0");
+        if (placeShape(renderFromNode, entry))
+            placed.push_back(entry);
+        else
+            notes.push_back("medium '" + medium.name +
+                            "' has no volume: its size or a scale above it is 0");
     }
-    std::stable_partition(placed.begin(), placed.end(), [](const PlacedMedium& m) { return m.data.kind != gpu::kMediumGrid; });
+    std::stable_partition(placed.begin(), placed.end(),
+                          [](const PlacedMedium& m) { return m.data.kind != gpu::kMediumGrid; });
     return placed;
 }
 
@@ -225,20 +242,28 @@ std::vector<MediumUse> classifyMedia(std::span<const PlacedMedium> media, const 
     return uses;
 }
 
-uint32_t assignPhaseGroups(std::span<PlacedMedium> media, gpu::MediaHeader& header, std::vector<std::string>& notes) {
+uint32_t assignPhaseGroups(std::span<PlacedMedium> media, gpu::MediaHeader& header,
+                           std::vector<std::string>& notes) {
     uint32_t count = 0;
     for (PlacedMedium& medium : media) {
         if (!anyPositive(medium.medium->scattering)) continue; // any group will do
         // Rayleigh's function has no parameter.
-        const vec2 wanted(float(medium.data.phase), medium.data.phase == gpu::kPhaseRayleigh ? 0.0f : medium.data.scattering.w);
+        const vec2 wanted(float(medium.data.phase), medium.data.phase == gpu::kPhaseRayleigh
+                                                        ? 0.0f
+                                                        : medium.data.scattering.w);
         uint32_t group = 0;
         while (group < count && vec2(header.phases[group]) != wanted) ++group;
         if (group == gpu::kMaxPhaseGroups) {
-            const auto difference = [&](const vec4& other) { return std::abs(other.y - wanted.y) + (other.x != wanted.x ? 1.0f : 0.0f); };
-            group = uint32_t(std::min_element(header.phases, header.phases + count, [&](const vec4& a, const vec4& b) {
-                                 return difference(a) < difference(b);
-                             }) - header.phases);
-            notes.push_back("medium '" + medium.medium->name + "' scatters with the phase function of another: a frame has room for " +
+            const auto difference = [&](const vec4& other) {
+                return std::abs(other.y - wanted.y) + (other.x != wanted.x ? 1.0f : 0.0f);
+            };
+            group = uint32_t(std::min_element(header.phases, header.phases + count,
+                                              [&](const vec4& a, const vec4& b) {
+                                                  return difference(a) < difference(b);
+                                              }) -
+                             header.phases);
+            notes.push_back("medium '" + medium.medium->name +
+                            "' scatters with the phase function of another: a frame has room for " +
                             std::to_string(gpu::kMaxPhaseGroups) + " different ones");
         } else if (group == count) {
             header.phases[count++] = vec4(wanted, 0, 0);

@@ -15,18 +15,19 @@ namespace tyndall {
 /// One medium of one node, as shaders will see it. Brick tables and phase groups are filled in later.
 struct PlacedMedium {
     gpu::MediumData data{};
-    Bounds bounds;           // render space; without end for Everywhere and Height
+    Bounds bounds; // render space; without end for Everywhere and Height
     const Medium* medium = nullptr;
 };
 
 /// Every visible medium that absorbs, scatters or emits, those with grids last. Transforms are computed in double precision.
 /// Media that cannot be rendered are left out, with a sentence each in `notes`.
-std::vector<PlacedMedium> placeMedia(const Scene& scene, const dvec3& renderOrigin, std::vector<std::string>& notes);
+std::vector<PlacedMedium> placeMedia(const Scene& scene, const dvec3& renderOrigin,
+                                     std::vector<std::string>& notes);
 
 /// What decides whether a medium matters. Everything in render space.
 struct MediaView {
     const gpu::ViewData* view = nullptr;
-    std::span<const Bounds> surfaces;         // of everything drawn
+    std::span<const Bounds> surfaces; // of everything drawn
     std::span<const gpu::LightData> lights;
 };
 
@@ -37,6 +38,7 @@ std::vector<MediumUse> classifyMedia(std::span<const PlacedMedium> media, const 
 
 /// Gives each medium its group of equal phase functions and writes the groups; returns their number (at least 1). Beyond
 /// kMaxPhaseGroups a medium joins the most alike group, with a sentence in `notes`.
-uint32_t assignPhaseGroups(std::span<PlacedMedium> media, gpu::MediaHeader& header, std::vector<std::string>& notes);
+uint32_t assignPhaseGroups(std::span<PlacedMedium> media, gpu::MediaHeader& header,
+                           std::vector<std::string>& notes);
 
 } // namespace tyndall

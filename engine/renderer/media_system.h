@@ -24,18 +24,19 @@ namespace tyndall {
 
 struct MediaFrameRequest {
     const ViewResources* view = nullptr;
-    std::span<const Bounds> surfaces;         // render space, of everything drawn
-    std::span<const gpu::LightData> lights;   // as in `Lights`, environment samples included
-    bool keepUnseen = false;                  // for techniques that carry light through media that the view cannot meet
+    std::span<const Bounds> surfaces;       // render space, of everything drawn
+    std::span<const gpu::LightData> lights; // as in `Lights`, environment samples included
+    bool keepUnseen =
+        false; // for techniques that carry light through media that the view cannot meet
 };
 
 /// What the passes of one frame know about its media. Reasons are null where there is none to skip.
 struct MediaFrame {
-    MediaResources resources;        // resources.count == 0: every pass over media is skipped
+    MediaResources resources;              // resources.count == 0: every pass over media is skipped
     const char* skipReason = nullptr;      // why no medium matters at all
     const char* marchSkipReason = nullptr; // why no ray from the eye meets one
     const char* depthSkipReason = nullptr; // why no light has a volume of optical depth
-    bool scatters = false;           // some medium in view does
+    bool scatters = false;                 // some medium in view does
     bool emits = false;
     const MediaSettings* settings = nullptr; // the system's
 };
@@ -70,11 +71,15 @@ public:
 
 private:
     std::vector<PlacedMedium> choose(const MediaFrameRequest& request, MediaFrame& frame) const;
-    gpu::MediaHeader makeHeader(const MediaFrameRequest& request, std::vector<PlacedMedium>& chosen);
-    void layOut(const MediaFrameRequest& request, const std::vector<PlacedMedium>& chosen, bool volumes, MediaFrame& frame);
+    gpu::MediaHeader makeHeader(const MediaFrameRequest& request,
+                                std::vector<PlacedMedium>& chosen);
+    void layOut(const MediaFrameRequest& request, const std::vector<PlacedMedium>& chosen,
+                bool volumes, MediaFrame& frame);
     void uploadTable(const gpu::MediaHeader& header, const std::vector<PlacedMedium>& chosen);
     void uploadViews();
-    fg::StaticBuffer upload(const char* name, std::span<const std::byte> data, std::vector<std::byte>& last, fg::StaticBuffer buffer, Version& version);
+    fg::StaticBuffer upload(const char* name, std::span<const std::byte> data,
+                            std::vector<std::byte>& last, fg::StaticBuffer buffer,
+                            Version& version);
 
     fg::Executor& executor_;
     MediaSettings settings_{};

@@ -7,10 +7,10 @@ namespace tyndall {
 
 struct MediumMarchInputs {
     ViewResources view;
-    fg::TextureHandle depth;   // GBuffer::depth
+    fg::TextureHandle depth; // GBuffer::depth
     LightResources lights;
-    bool inScatter = true;     // the term LVE is wanted
-    bool emission = true;      // the media's part of LE is wanted
+    bool inScatter = true; // the term LVE is wanted
+    bool emission = true;  // the media's part of LE is wanted
 };
 
 /// View-sized RGBA32F. Null: not computed, because there is none (reason in the report) or it is not wanted.
@@ -20,6 +20,7 @@ struct MediumMarch {
     fg::TextureHandle emission;      // nits: the media's part of LE
 };
 
-MediumMarch addMediumMarchPass(fg::FrameGraph& graph, const MediaFrame& frame, const MediumMarchInputs& inputs);
+MediumMarch addMediumMarchPass(fg::FrameGraph& graph, const MediaFrame& frame,
+                               const MediumMarchInputs& inputs);
 
 } // namespace tyndall

@@ -8,20 +8,25 @@ namespace {
 
 /// Interleaves one attribute; `values` has N floats a vertex.
 template <int N, typename Vector>
-void packAttribute(PackedVertices& packed, const std::vector<Vector>& values, size_t count, uint32_t offsetFloats) {
-    CHECK(values.size() == count, "a mesh has an attribute with another number of values than it has positions");
+void packAttribute(PackedVertices& packed, const std::vector<Vector>& values, size_t count,
+                   uint32_t offsetFloats) {
+    CHECK(values.size() == count,
+          "a mesh has an attribute with another number of values than it has positions");
     for (size_t i = 0; i < count; ++i)
-        for (int c = 0; c < N; ++c) packed.values[i * packed.strideFloats + offsetFloats + size_t(c)] = values[i][c];
+        for (int c = 0; c < N; ++c)
+            packed.values[i * packed.strideFloats + offsetFloats + size_t(c)] = values[i][c];
 }
 
 } // namespace
 
 PackedVertices packVertices(const Mesh& mesh) {
     PackedVertices packed;
-    const auto declare = [&](VertexLocation location, uint32_t set, uint32_t components, bool present) -> uint32_t {
+    const auto declare = [&](VertexLocation location, uint32_t set, uint32_t components,
+                             bool present) -> uint32_t {
         if (!present) return 0;
         const uint32_t offset = packed.strideFloats;
-        packed.attributes.push_back({uint32_t(location) + set, components, fg::AttributeType::Float32, offset * 4});
+        packed.attributes.push_back(
+            {uint32_t(location) + set, components, fg::AttributeType::Float32, offset * 4});
         packed.strideFloats += components;
         return offset;
     };
@@ -29,7 +34,8 @@ PackedVertices packVertices(const Mesh& mesh) {
     const uint32_t normal = declare(VertexLocation::Normal, 0, 3, !mesh.normals.empty());
     const uint32_t tangent = declare(VertexLocation::Tangent, 0, 4, !mesh.tangents.empty());
     std::array<uint32_t, kMaxUvSets> uv{};
-    for (uint32_t set = 0; set < uint32_t(kMaxUvSets); ++set) uv[set] = declare(VertexLocation::Uv0, set, 2, !mesh.uvs[set].empty());
+    for (uint32_t set = 0; set < uint32_t(kMaxUvSets); ++set)
+        uv[set] = declare(VertexLocation::Uv0, set, 2, !mesh.uvs[set].empty());
     const uint32_t color = declare(VertexLocation::Color, 0, 4, !mesh.colors.empty());
 
     const size_t count = mesh.positions.size();
@@ -62,16 +68,19 @@ Result<fg::StaticGeometry> MeshUpload::obtain(const Scene& scene, int index) {
     if (mesh.indices.empty() || mesh.positions.empty()) return fg::StaticGeometry{};
     if (entries_.size() <= size_t(index)) entries_.resize(size_t(index) + 1);
     Entry& entry = entries_[size_t(index)];
-    if (entry.geometry.id && entry.version == mesh.version && entry.source == mesh.positions.data()) return entry.geometry;
+    if (entry.geometry.id && entry.version == mesh.version && entry.source == mesh.positions.data())
+        return entry.geometry;
     release(entry);
 
     const PackedVertices packed = packVertices(mesh);
     const std::string name = "mesh " + mesh.name;
     Result<gl::Buffer> vertices =
-        gl::Buffer::create(name + " vertices", packed.values.size() * sizeof(float), gl::BufferAccess::GpuOnly, packed.values.data());
+        gl::Buffer::create(name + " vertices", packed.values.size() * sizeof(float),
+                           gl::BufferAccess::GpuOnly, packed.values.data());
     if (!vertices) return vertices.error();
     Result<gl::Buffer> indices =
-        gl::Buffer::create(name + " indices", mesh.indices.size() * sizeof(uint32_t), gl::BufferAccess::GpuOnly, mesh.indices.data());
+        gl::Buffer::create(name + " indices", mesh.indices.size() * sizeof(uint32_t),
+                           gl::BufferAccess::GpuOnly, mesh.indices.data());
     if (!indices) return indices.error();
     entry.vertices = executor_.registerBuffer(name + " vertices", std::move(*vertices));
     entry.indices = executor_.registerBuffer(name + " indices", std::move(*indices));

@@ -15,9 +15,9 @@ enum class VertexLocation : uint32_t { Position = 0, Normal = 1, Tangent = 2, Uv
 
 /// Vertices ready for a buffer.
 struct PackedVertices {
-    std::vector<float> values;                    // strideFloats a vertex
+    std::vector<float> values; // strideFloats a vertex
     uint32_t strideFloats = 0;
-    std::vector<fg::VertexAttribute> attributes;  // only what the mesh has
+    std::vector<fg::VertexAttribute> attributes; // only what the mesh has
 };
 /// CHECKs that every attribute has as many values as there are positions, or none.
 PackedVertices packVertices(const Mesh& mesh);
@@ -39,7 +39,8 @@ public:
 private:
     struct Entry {
         Version version = 0;
-        const void* source = nullptr; // the mesh's positions: another scene may bring the same version number
+        const void* source =
+            nullptr; // the mesh's positions: another scene may bring the same version number
         fg::StaticGeometry geometry;
         fg::StaticBuffer vertices, indices;
     };

@@ -8,7 +8,8 @@ void addOpticalDepthPass(fg::FrameGraph& graph, const MediaSystem& media, MediaF
         fg::TextureHandle volume;
         const OpticalDepthLayout* layout; // lives in the MediaSystem until the next frame
     };
-    const Data& pass = graph.addPass<Data>("media.opticalDepth",
+    const Data& pass = graph.addPass<Data>(
+        "media.opticalDepth",
         [&](fg::Builder& builder, Data& data) {
             if (frame.depthSkipReason) return builder.skip(frame.depthSkipReason);
             data.media = readMedia(builder, frame.resources);
@@ -23,7 +24,9 @@ void addOpticalDepthPass(fg::FrameGraph& graph, const MediaSystem& media, MediaF
                 auto command = context.compute("media/optical_depth.comp");
                 bindMedia(command, data.media);
                 const uint32_t size = uint32_t(view.block.w);
-                command.params(gpu::OpticalDepthParams{uint32_t(light), 0, 0, 0}).bind("volume", data.volume).dispatchOver(size, size);
+                command.params(gpu::OpticalDepthParams{uint32_t(light), 0, 0, 0})
+                    .bind("volume", data.volume)
+                    .dispatchOver(size, size);
             }
         });
     frame.resources.opticalDepth = pass.volume;

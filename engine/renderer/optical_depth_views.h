@@ -19,6 +19,7 @@ struct OpticalDepthLayout {
 
 /// `grids`: render-space box around all grids that matter. The first `mostVolumes` lights whose light can cross it get a cube of
 /// `resolution`³ texels; later ones are to march. CHECKs: resolution 2 to 2048.
-OpticalDepthLayout layOutOpticalDepth(std::span<const gpu::LightData> lights, const Bounds& grids, int resolution, int mostVolumes);
+OpticalDepthLayout layOutOpticalDepth(std::span<const gpu::LightData> lights, const Bounds& grids,
+                                      int resolution, int mostVolumes);
 
 } // namespace tyndall

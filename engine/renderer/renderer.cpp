@@ -13,16 +13,20 @@ namespace {
 
 constexpr int kLargestPicture = 16384; // pixels along an edge: what every GL 4.5 driver takes
 
-SceneTraits traitsOf(const Scene& scene, const GpuScene& surfaces, const LightSystem& lights, bool mediaEnabled) {
+SceneTraits traitsOf(const Scene& scene, const GpuScene& surfaces, const LightSystem& lights,
+                     bool mediaEnabled) {
     SceneTraits traits;
     traits.surfaces = !surfaces.items().empty();
-    traits.lights = !lights.lights().empty() || maximumOf(scene.environment.radiance) > 0 || scene.environment.image;
-    for (const Material& material : scene.materials) traits.lights |= maximumOf(material.emissive) > 0;
+    traits.lights = !lights.lights().empty() || maximumOf(scene.environment.radiance) > 0 ||
+                    scene.environment.image;
+    for (const Material& material : scene.materials)
+        traits.lights |= maximumOf(material.emissive) > 0;
     if (!mediaEnabled) return traits;
     for (const Medium& medium : scene.media) {
         traits.media |= maximumOf(medium.extinction()) > 0 || maximumOf(medium.emission) > 0;
         traits.scatteringMedia |= maximumOf(medium.scattering) > 0;
-        traits.lights |= maximumOf(medium.emission) > 0 || (medium.temperature && medium.temperatureScale > 0);
+        traits.lights |=
+            maximumOf(medium.emission) > 0 || (medium.temperature && medium.temperatureScale > 0);
     }
     return traits;
 }
@@ -41,10 +45,12 @@ void Renderer::Impl::registerSettings() {
 }
 
 /// Uploads what changed and makes this frame's view, lights and lists.
-Result<void> Renderer::Impl::updateScene(const FrameRequest& request, const dmat4& worldFromCamera, const Camera& camera) {
+Result<void> Renderer::Impl::updateScene(const FrameRequest& request, const dmat4& worldFromCamera,
+                                         const Camera& camera) {
     const SceneVersions& now = scene->versions;
     if (std::tie(now.structure, now.transforms, now.meshes, now.media) !=
-        std::tie(seenBounds.structure, seenBounds.transforms, seenBounds.meshes, seenBounds.media)) {
+        std::tie(seenBounds.structure, seenBounds.transforms, seenBounds.meshes,
+                 seenBounds.media)) {
         sceneBounds = scene->worldBounds();
         seenBounds = now;
     }
@@ -53,7 +59,8 @@ Result<void> Renderer::Impl::updateScene(const FrameRequest& request, const dmat
     Bounds around = sceneBounds;
     around.include(eye);
     const double radius = std::max(0.5 * glm::length(around.extent()), 100 * camera.znear);
-    order.view = makeView({&camera, worldFromCamera, renderOrigin, radius, request.width, request.height, request.frameIndex, request.seed, request.converge});
+    order.view = makeView({&camera, worldFromCamera, renderOrigin, radius, request.width,
+                           request.height, request.frameIndex, request.seed, request.converge});
 
     surfaces.setAnisotropy(gbufferSettings.anisotropy);
     if (Result<void> done = surfaces.update(*scene, renderOrigin); !done) return done;
@@ -70,21 +77,26 @@ Result<void> Renderer::Impl::updateScene(const FrameRequest& request, const dmat
 /// Everything that the picture depends on but the frame's number: when it changes, averaging starts again.
 std::string Renderer::Impl::averageKey(const FrameRequest& request) const {
     const SceneVersions& v = scene->versions;
-    std::string key = fmt::format("{} {} {} {} {} {} {} {} {} | {}x{} {} {} {} {} {} | ", v.structure, v.transforms, v.meshes, v.materials, v.textures, v.lights,
-                                  v.media, v.cameras, v.environment, request.width, request.height, request.cameraNode, request.terms, request.gi,
-                                  request.seed, request.time, request.separateTerms);
+    std::string key =
+        fmt::format("{} {} {} {} {} {} {} {} {} | {}x{} {} {} {} {} {} | ", v.structure,
+                    v.transforms, v.meshes, v.materials, v.textures, v.lights, v.media, v.cameras,
+                    v.environment, request.width, request.height, request.cameraNode, request.terms,
+                    request.gi, request.seed, request.time, request.separateTerms);
     const mat4& m = order.view.data.viewFromRender;
     for (int c = 0; c < 4; ++c) key += fmt::format("{} {} {} {} ", m[c].x, m[c].y, m[c].z, m[c].w);
-    key += fmt::format("{} {} | {}", request.pose ? request.pose->camera.yfov : 0, request.pose ? request.pose->camera.ymag : 0, shaders.generation());
+    key += fmt::format("{} {} | {}", request.pose ? request.pose->camera.yfov : 0,
+                       request.pose ? request.pose->camera.ymag : 0, shaders.generation());
     for (const std::string& setting : settings.differences())
-        if (setting.rfind("inspect.", 0) != 0 && setting.rfind("post.", 0) != 0) key += " " + setting;
+        if (setting.rfind("inspect.", 0) != 0 && setting.rfind("post.", 0) != 0)
+            key += " " + setting;
     return key;
 }
 
 Renderer::Renderer(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
 Renderer::~Renderer() = default;
 
-Result<std::unique_ptr<Renderer>> Renderer::create(gl::Context& context, const RendererOptions& options) {
+Result<std::unique_ptr<Renderer>> Renderer::create(gl::Context& context,
+                                                   const RendererOptions& options) {
     CHECK(context.isCurrent(), "the renderer needs its context to be current");
     auto impl = std::make_unique<Impl>(context, options);
     impl->registerSettings();
@@ -93,12 +105,15 @@ Result<std::unique_ptr<Renderer>> Renderer::create(gl::Context& context, const R
         std::error_code ignored; // A folder that is not there holds no plugins.
         for (const auto& entry : std::filesystem::directory_iterator(folder, ignored))
             if (entry.path().extension() == ".so")
-                if (Result<void> loaded = impl->plugins.load(entry.path()); !loaded) log::warning(loaded.message());
+                if (Result<void> loaded = impl->plugins.load(entry.path()); !loaded)
+                    log::warning(loaded.message());
     }
     for (const std::filesystem::path& file : options.pluginFiles)
         if (Result<void> loaded = impl->plugins.load(file); !loaded) return loaded.error();
-    for (const std::string& failure : impl->plugins.setup(impl->host, impl->settings)) log::warning(failure);
-    for (const plugin::RegisteredTechnique& technique : impl->plugins.techniques()) impl->techniques.push_back(technique.technique);
+    for (const std::string& failure : impl->plugins.setup(impl->host, impl->settings))
+        log::warning(failure);
+    for (const plugin::RegisteredTechnique& technique : impl->plugins.techniques())
+        impl->techniques.push_back(technique.technique);
     return std::unique_ptr<Renderer>(new Renderer(std::move(impl)));
 }
 
@@ -116,26 +131,46 @@ Result<void> Renderer::setScene(const Scene& scene) {
 Result<FrameResult> Renderer::renderFrame(const FrameRequest& request) {
     Impl& r = *impl_;
     CHECK(r.scene != nullptr, "setScene() comes before renderFrame()");
-    if (request.width < 1 || request.height < 1 || request.width > kLargestPicture || request.height > kLargestPicture)
-        return Error{fmt::format("a picture of {}x{} pixels cannot be made: each side takes 1 to {}", request.width, request.height, kLargestPicture)};
+    if (request.width < 1 || request.height < 1 || request.width > kLargestPicture ||
+        request.height > kLargestPicture)
+        return Error{
+            fmt::format("a picture of {}x{} pixels cannot be made: each side takes 1 to {}",
+                        request.width, request.height, kLargestPicture)};
     const int node = request.cameraNode != kNone ? request.cameraNode : r.scene->activeCamera;
     if (!request.pose && (node == kNone || r.scene->nodes.at(size_t(node)).camera == kNone))
-        return Error{"the scene '" + r.scene->name + "' has no camera: add a node with a \"camera\""};
-    const dmat4 worldFromCamera = request.pose ? request.pose->worldFromCamera : r.scene->worldTransforms().at(size_t(node));
-    const Camera& camera = request.pose ? request.pose->camera : r.scene->cameras.at(size_t(r.scene->nodes[size_t(node)].camera));
+        return Error{"the scene '" + r.scene->name +
+                     "' has no camera: add a node with a \"camera\""};
+    const dmat4 worldFromCamera =
+        request.pose ? request.pose->worldFromCamera : r.scene->worldTransforms().at(size_t(node));
+    const Camera& camera = request.pose
+                               ? request.pose->camera
+                               : r.scene->cameras.at(size_t(r.scene->nodes[size_t(node)].camera));
 
     r.shaders.pollChanges();
-    if (Result<void> updated = r.updateScene(request, worldFromCamera, camera); !updated) return updated.error();
-    const Result<FramePlan> plan = makePlan(request.gi, request.terms, r.techniques, traitsOf(*r.scene, r.surfaces, r.lights, r.media.settings().enabled));
+    if (Result<void> updated = r.updateScene(request, worldFromCamera, camera); !updated)
+        return updated.error();
+    const Result<FramePlan> plan =
+        makePlan(request.gi, request.terms, r.techniques,
+                 traitsOf(*r.scene, r.surfaces, r.lights, r.media.settings().enabled));
     if (!plan) return plan.error();
 
     r.order.plan = &*plan;
     r.order.ev100 = r.scene->ev100;
     r.order.separateTerms = request.separateTerms;
-    r.order.averagedFrame = request.converge ? r.average.next(r.averageKey(request), request.restart) : 0;
+    r.order.averagedFrame =
+        request.converge ? r.average.next(r.averageKey(request), request.restart) : 0;
     const SceneVersions& v = r.scene->versions;
-    r.order.sceneChange = {r.surfaces.version(), v.materials, v.lights, r.media.version(), v.environment, uint32_t(r.lights.lights().size()), uint32_t(r.scene->media.size()), {}, {}};
-    for (size_t i = 0; i < r.plugins.count(); ++i) r.plugins.plugin(i).sceneChanged(r.order.sceneChange);
+    r.order.sceneChange = {r.surfaces.version(),
+                           v.materials,
+                           v.lights,
+                           r.media.version(),
+                           v.environment,
+                           uint32_t(r.lights.lights().size()),
+                           uint32_t(r.scene->media.size()),
+                           {},
+                           {}};
+    for (size_t i = 0; i < r.plugins.count(); ++i)
+        r.plugins.plugin(i).sceneChanged(r.order.sceneChange);
 
     const bool inspecting = !request.inspect.empty();
     fg::ExecutorOptions options = r.executor.options();
@@ -144,27 +179,36 @@ Result<FrameResult> Renderer::renderFrame(const FrameRequest& request) {
         r.executor.setOptions(options);
     }
     fg::FrameGraph& graph = r.executor.beginFrame();
-    r.images = recordFrame(graph, {r.surfaces, r.lights, r.media, r.blended, r.environment, r.plugins, r.gbufferSettings, r.surfaceLightSettings, r.postSettings}, r.order);
+    r.images = recordFrame(graph,
+                           {r.surfaces, r.lights, r.media, r.blended, r.environment, r.plugins,
+                            r.gbufferSettings, r.surfaceLightSettings, r.postSettings},
+                           r.order);
     r.inspected = {};
     if (inspecting) {
         const fg::TextureHandle resource = r.executor.findTexture(request.inspect);
         if (resource && !fg::isIntegerFormat(graph.desc(resource).format))
-            r.inspected = addInspectPass(graph, resource, request.width, request.height, r.inspectSettings);
+            r.inspected =
+                addInspectPass(graph, resource, request.width, request.height, r.inspectSettings);
     }
-    for (fg::TextureHandle output : {r.images.beauty, r.images.display, r.inspected, r.images.gbuffer.depth, r.images.gbuffer.normal, r.images.gbuffer.base, r.images.transmittance})
+    for (fg::TextureHandle output :
+         {r.images.beauty, r.images.display, r.inspected, r.images.gbuffer.depth,
+          r.images.gbuffer.normal, r.images.gbuffer.base, r.images.transmittance})
         if (output && !graph.isAbsent(output)) graph.markOutput(output);
     if (request.separateTerms)
-        for (uint32_t i = 0; i < r.images.terms.count; ++i) graph.markOutput(r.images.terms.images[i].image);
+        for (uint32_t i = 0; i < r.images.terms.count; ++i)
+            graph.markOutput(r.images.terms.images[i].image);
     if (Result<void> done = r.executor.execute(); !done) return done.error();
 
     FrameResult result;
     result.plan = *plan;
     r.order.plan = nullptr;
     if (request.converge) {
-        if (r.average.shouldMeasure(r.convergeSettings)) r.average.measure(r.executor.readImage(r.images.beauty));
+        if (r.average.shouldMeasure(r.convergeSettings))
+            r.average.measure(r.executor.readImage(r.images.beauty));
         result.accumulatedFrames = r.average.frames();
         result.estimatedError = r.average.estimatedError();
-        result.converged = result.estimatedError <= double(r.convergeSettings.relmse) || result.accumulatedFrames >= uint32_t(r.convergeSettings.maximumFrames);
+        result.converged = result.estimatedError <= double(r.convergeSettings.relmse) ||
+                           result.accumulatedFrames >= uint32_t(r.convergeSettings.maximumFrames);
     }
     return result;
 }

@@ -40,17 +40,19 @@ struct CameraPose {
 
 struct FrameRequest {
     int width = 1280, height = 720;
-    int cameraNode = kNone;              // kNone: the scene's active camera
-    std::optional<CameraPose> pose;      // replaces cameraNode
-    TermSet terms = kAllTerms;           // terms not in here are not rendered
-    std::string gi = "auto";             // as --gi takes it: auto, none, a technique, or TERM=TECHNIQUE,…
-    double time = 0;                     // seconds of the scene's clock
-    uint32_t frameIndex = 0;             // counts frames; drives jitter and low-discrepancy sequences
+    int cameraNode = kNone;         // kNone: the scene's active camera
+    std::optional<CameraPose> pose; // replaces cameraNode
+    TermSet terms = kAllTerms;      // terms not in here are not rendered
+    std::string gi = "auto"; // as --gi takes it: auto, none, a technique, or TERM=TECHNIQUE,…
+    double time = 0;         // seconds of the scene's clock
+    uint32_t frameIndex = 0; // counts frames; drives jitter and low-discrepancy sequences
     uint32_t seed = 0;
-    bool converge = false;               // average this frame with those since the last change of request or scene
-    bool restart = false;                // forget the average
-    bool separateTerms = false;          // keep an image a term for readTerms(), averaged too
-    std::string inspect;                 // name of a resource to show instead of the picture ("shadow.atlas"), see InspectSettings
+    bool converge =
+        false;            // average this frame with those since the last change of request or scene
+    bool restart = false; // forget the average
+    bool separateTerms = false; // keep an image a term for readTerms(), averaged too
+    std::string
+        inspect; // name of a resource to show instead of the picture ("shadow.atlas"), see InspectSettings
 };
 
 struct FrameResult {
@@ -58,7 +60,7 @@ struct FrameResult {
     /// relmse of the average that its own variance accounts for; 0 where nothing varies, infinity before the second frame.
     /// Only measured every so often in converge mode (it needs a read-back); the last measurement is kept.
     double estimatedError = 0;
-    bool converged = false;         // estimatedError is below the setting `converge.relmse`
+    bool converged = false; // estimatedError is below the setting `converge.relmse`
     FramePlan plan;
 };
 
@@ -72,7 +74,8 @@ struct TermImage {
 class Renderer {
 public:
     /// Shaders are found, plugins loaded and set up. `context` must be current and outlive the renderer.
-    static Result<std::unique_ptr<Renderer>> create(gl::Context& context, const RendererOptions& options = {});
+    static Result<std::unique_ptr<Renderer>> create(gl::Context& context,
+                                                    const RendererOptions& options = {});
     ~Renderer();
 
     /// Every setting of the engine and of the plugins.

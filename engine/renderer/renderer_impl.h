@@ -23,7 +23,11 @@ private:
 
 struct Renderer::Impl {
     Impl(gl::Context& glContext, const RendererOptions& options)
-        : context(glContext), executor(shaders, {.poison = options.poison, .checkTexels = options.checkTexels, .keepAll = false, .timings = true}), host(shaders) {}
+        : context(glContext), executor(shaders, {.poison = options.poison,
+                                                 .checkTexels = options.checkTexels,
+                                                 .keepAll = false,
+                                                 .timings = true}),
+          host(shaders) {}
 
     gl::Context& context;
     gl::ShaderLibrary shaders;
@@ -56,7 +60,8 @@ struct Renderer::Impl {
     float ev100 = 0;
 
     void registerSettings();
-    Result<void> updateScene(const FrameRequest& request, const dmat4& worldFromCamera, const Camera& camera);
+    Result<void> updateScene(const FrameRequest& request, const dmat4& worldFromCamera,
+                             const Camera& camera);
     std::string averageKey(const FrameRequest& request) const;
 };
 

@@ -9,7 +9,8 @@ namespace {
 Image withoutAlpha(const Image& image) {
     Image result(image.width, image.height, 3);
     for (size_t i = 0; i < size_t(image.width) * size_t(image.height); ++i)
-        std::memcpy(&result.pixels[i * 3], &image.pixels[i * size_t(image.channels)], 3 * sizeof(float));
+        std::memcpy(&result.pixels[i * 3], &image.pixels[i * size_t(image.channels)],
+                    3 * sizeof(float));
     return result;
 }
 
@@ -17,7 +18,9 @@ Image withoutAlpha(const Image& image) {
 vec3 octahedralDecodeUnorm(vec2 unorm) {
     const vec2 square = glm::clamp(unorm * (65535.0f / 65534.0f) * 2.0f - 1.0f, vec2(-1), vec2(1));
     vec3 p(square, 1.0f - std::abs(square.x) - std::abs(square.y));
-    if (p.z < 0) p = vec3((1.0f - std::abs(square.y)) * (square.x >= 0 ? 1.0f : -1.0f), (1.0f - std::abs(square.x)) * (square.y >= 0 ? 1.0f : -1.0f), p.z);
+    if (p.z < 0)
+        p = vec3((1.0f - std::abs(square.y)) * (square.x >= 0 ? 1.0f : -1.0f),
+                 (1.0f - std::abs(square.x)) * (square.y >= 0 ? 1.0f : -1.0f), p.z);
     return glm::normalize(p);
 }
 
@@ -30,7 +33,8 @@ Image distances(const Image& depth, const gpu::ViewData& view) {
             const double z = double(depth.at(x, y)[0]);
             if (z <= 0) continue;
             const dvec2 clip((x + 0.5) / depth.width * 2 - 1, 1 - (y + 0.5) / depth.height * 2);
-            const dvec4 point = renderFromClip * dvec4(clip, z, 1), start = renderFromClip * dvec4(clip, 1, 1);
+            const dvec4 point = renderFromClip * dvec4(clip, z, 1),
+                        start = renderFromClip * dvec4(clip, 1, 1);
             const bool parallel = view.flags & gpu::kViewOrthographic;
             const dvec3 from = parallel ? dvec3(start) / start.w : dvec3(view.cameraPosition);
             result.at(x, y)[0] = float(glm::length(dvec3(point) / point.w - from));
@@ -51,7 +55,9 @@ Image normals(const Image& packed, const Image& depth) {
 
 } // namespace
 
-Image Renderer::readBeauty() { return withoutAlpha(impl_->executor.readImage(impl_->images.beauty)); }
+Image Renderer::readBeauty() {
+    return withoutAlpha(impl_->executor.readImage(impl_->images.beauty));
+}
 
 std::vector<TermImage> Renderer::readTerms() {
     std::vector<TermImage> result;
@@ -60,15 +66,19 @@ std::vector<TermImage> Renderer::readTerms() {
         std::string name = termNames(handle.terms);
         for (char& c : name)
             if (c == ',') c = '+';
-        result.push_back({handle.terms, name, withoutAlpha(impl_->executor.readImage(handle.image))});
+        result.push_back(
+            {handle.terms, name, withoutAlpha(impl_->executor.readImage(handle.image))});
     }
     return result;
 }
 
 std::vector<uint8_t> Renderer::readDisplay() {
-    const Image image = impl_->executor.readImage(impl_->inspected ? impl_->inspected : impl_->images.display);
+    const Image image =
+        impl_->executor.readImage(impl_->inspected ? impl_->inspected : impl_->images.display);
     std::vector<uint8_t> bytes(size_t(image.width) * size_t(image.height) * 3);
-    for (size_t i = 0; i < bytes.size(); ++i) bytes[i] = uint8_t(std::lround(image.pixels[i / 3 * size_t(image.channels) + i % 3] * 255.0f));
+    for (size_t i = 0; i < bytes.size(); ++i)
+        bytes[i] =
+            uint8_t(std::lround(image.pixels[i / 3 * size_t(image.channels) + i % 3] * 255.0f));
     return bytes;
 }
 
@@ -78,16 +88,21 @@ uint32_t Renderer::displayTexture() const {
 
 Result<Image> Renderer::readAov(std::string_view name) {
     const FrameImages& images = impl_->images;
-    if (name == "depth") return distances(impl_->executor.readImage(images.gbuffer.depth), impl_->order.view.data);
-    if (name == "normal") return normals(impl_->executor.readImage(images.gbuffer.normal), impl_->executor.readImage(images.gbuffer.depth));
+    if (name == "depth")
+        return distances(impl_->executor.readImage(images.gbuffer.depth), impl_->order.view.data);
+    if (name == "normal")
+        return normals(impl_->executor.readImage(images.gbuffer.normal),
+                       impl_->executor.readImage(images.gbuffer.depth));
     if (name == "albedo") return withoutAlpha(impl_->executor.readImage(images.gbuffer.base));
     if (name == "transmittance") {
-        if (images.transmittance) return withoutAlpha(impl_->executor.readImage(images.transmittance));
+        if (images.transmittance)
+            return withoutAlpha(impl_->executor.readImage(images.transmittance));
         Image clear(impl_->order.view.width, impl_->order.view.height, 3);
         std::fill(clear.pixels.begin(), clear.pixels.end(), 1.0f);
         return clear;
     }
-    return Error{"layer '" + std::string(name) + "' is unknown: there are depth, normal, albedo, transmittance and terms"};
+    return Error{"layer '" + std::string(name) +
+                 "' is unknown: there are depth, normal, albedo, transmittance and terms"};
 }
 
 } // namespace tyndall

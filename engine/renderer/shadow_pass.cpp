@@ -31,7 +31,8 @@ std::array<vec4, 5> mapPlanes(const mat4& clipFromRender) {
 
 fg::RasterState casterState() {
     fg::RasterState state;
-    state.cull = fg::CullMode::None; // a surface that the camera sees from one side only blocks light from both
+    state.cull = fg::CullMode::
+        None; // a surface that the camera sees from one side only blocks light from both
     state.depth = fg::DepthMode::TestAndWrite;
     state.compare = fg::CompareMode::Greater; // reversed depth: the nearest to the light stays
     state.depthClamp = true;
@@ -58,10 +59,12 @@ uint64_t ShadowPass::castersKey(const GpuScene& scene) {
         const mat4& m = scene.objectData()[item.object].renderFromLocal;
         for (int c = 0; c < 4; ++c)
             for (int r = 0; r < 4; r += 2)
-                key = fg::mixHash(key, uint64_t(std::bit_cast<uint32_t>(m[c][r])) << 32 | std::bit_cast<uint32_t>(m[c][r + 1]));
+                key = fg::mixHash(key, uint64_t(std::bit_cast<uint32_t>(m[c][r])) << 32 |
+                                           std::bit_cast<uint32_t>(m[c][r + 1]));
         if (item.alphaMode == AlphaMode::Opaque) continue;
         const gpu::MaterialData& material = scene.materialData()[item.material];
-        key = fg::hashName({reinterpret_cast<const char*>(&material), sizeof material}, fg::mixHash(key, scene.textures(item.material).baseColor.id));
+        key = fg::hashName({reinterpret_cast<const char*>(&material), sizeof material},
+                           fg::mixHash(key, scene.textures(item.material).baseColor.id));
     }
     casterVersion_ = scene.version();
     return castersKey_ = key;
@@ -71,20 +74,33 @@ void ShadowPass::drawMap(const Data& data, size_t index, fg::PassContext& contex
     const gpu::ShadowView& view = data.plan->views[index];
     const fg::Target depth{data.atlas, view.layer, 0};
     const int x = int(view.atlas.x), y = int(view.atlas.y), side = int(view.atlas.z);
-    context.raster("lighting/shadow_clear.vert", "lighting/shadow_clear.frag").depthOnly(depth).viewport(x, y, side, side).state(emptyState()).draw(3);
+    context.raster("lighting/shadow_clear.vert", "lighting/shadow_clear.frag")
+        .depthOnly(depth)
+        .viewport(x, y, side, side)
+        .state(emptyState())
+        .draw(3);
 
     const gpu::ShadowDrawParams params{data.plan->clipFromRender[index]};
     const std::array<vec4, 5> planes = mapPlanes(params.clipFromRender);
     for (const AlphaMode mode : {AlphaMode::Opaque, AlphaMode::Mask, AlphaMode::Blend}) {
         const bool mask = mode != AlphaMode::Opaque;
         forEachVisibleRun(data.scene->items(mode), planes, [&](const DrawRun& run) {
-            if (run.first->topology != fg::Topology::Triangles) return; // lines and points have no area
-            auto command = context.raster("lighting/shadow.vert", "lighting/shadow.frag", {{"MASK", mask ? 1 : 0}});
-            command.depthOnly(depth).viewport(x, y, side, side).state(casterState()).params(params).bind("Objects", data.scene->objects());
+            if (run.first->topology != fg::Topology::Triangles)
+                return; // lines and points have no area
+            auto command = context.raster("lighting/shadow.vert", "lighting/shadow.frag",
+                                          {{"MASK", mask ? 1 : 0}});
+            command.depthOnly(depth)
+                .viewport(x, y, side, side)
+                .state(casterState())
+                .params(params)
+                .bind("Objects", data.scene->objects());
             command.set("firstObject", int(run.first->object));
             if (mask) {
-                bindView(command, data.view).bind("Materials", data.scene->materials()).set("textureLodBias", 0.0f);
-                command.bind("baseColorTexture", data.scene->textures(run.first->material).baseColor);
+                bindView(command, data.view)
+                    .bind("Materials", data.scene->materials())
+                    .set("textureLodBias", 0.0f);
+                command.bind("baseColorTexture",
+                             data.scene->textures(run.first->material).baseColor);
             }
             command.drawGeometry(run.first->geometry, 0, run.first->indexCount, run.count);
         });
@@ -114,49 +130,75 @@ void ShadowPass::draw(const Data& data, fg::PassContext& context) {
     held_ = std::move(holds); // what else was there may have been drawn over
 }
 
-ShadowResources ShadowPass::addPasses(fg::FrameGraph& graph, const GpuScene& scene, const ShadowPlan& plan, const ViewResources& view) {
-    struct Upload { fg::BufferHandle views; const gpu::ShadowView* data; size_t bytes; };
+ShadowResources ShadowPass::addPasses(fg::FrameGraph& graph, const GpuScene& scene,
+                                      const ShadowPlan& plan, const ViewResources& view) {
+    struct Upload {
+        fg::BufferHandle views;
+        const gpu::ShadowView* data;
+        size_t bytes;
+    };
     ShadowResources resources;
     const uint64_t casters = plan.views.empty() ? 0 : castersKey(scene);
     uint64_t key = fg::mixHash(casters, plan.views.size());
     for (const uint64_t k : plan.keys) key = fg::mixHash(key, k);
 
-    const std::string_view viewBytes(reinterpret_cast<const char*>(plan.views.data()), plan.views.size() * sizeof(gpu::ShadowView));
-    resources.views = graph.addPass<Upload>("shadow.views",
-        [&](fg::Builder& builder, Upload& data) {
-            data.data = plan.views.data();
-            data.bytes = viewBytes.size();
-            data.views = builder.create("shadow.views", fg::BufferDesc{std::max(data.bytes, sizeof(gpu::ShadowView))}, fg::Access::TransferWrite);
-            builder.cacheBy(fg::hashName(viewBytes));
-        },
-        [](const Upload& data, fg::PassContext& context) {
-            if (data.bytes > 0) context.upload(data.views, 0, data.data, data.bytes);
-            else context.clearBuffer(data.views, 0);
-        }).views;
+    const std::string_view viewBytes(reinterpret_cast<const char*>(plan.views.data()),
+                                     plan.views.size() * sizeof(gpu::ShadowView));
+    resources.views = graph
+                          .addPass<Upload>(
+                              "shadow.views",
+                              [&](fg::Builder& builder, Upload& data) {
+                                  data.data = plan.views.data();
+                                  data.bytes = viewBytes.size();
+                                  data.views = builder.create(
+                                      "shadow.views",
+                                      fg::BufferDesc{std::max(data.bytes, sizeof(gpu::ShadowView))},
+                                      fg::Access::TransferWrite);
+                                  builder.cacheBy(fg::hashName(viewBytes));
+                              },
+                              [](const Upload& data, fg::PassContext& context) {
+                                  if (data.bytes > 0)
+                                      context.upload(data.views, 0, data.data, data.bytes);
+                                  else
+                                      context.clearBuffer(data.views, 0);
+                              })
+                          .views;
 
     if (plan.views.empty()) {
-        resources.atlas = graph.addPass<Data>("shadow.maps",
-            [&](fg::Builder& builder, Data& data) {
-                data.atlas = builder.create("shadow.atlas", fg::texture2DArray(fg::Format::Depth32F, 1, 1, 1), fg::Access::DepthTarget);
-                builder.skip(scene.items().empty() ? "no surface in the scene" : "no light casts a shadow");
-            },
-            [](const Data&, fg::PassContext&) {}).atlas;
+        resources.atlas =
+            graph
+                .addPass<Data>(
+                    "shadow.maps",
+                    [&](fg::Builder& builder, Data& data) {
+                        data.atlas = builder.create(
+                            "shadow.atlas", fg::texture2DArray(fg::Format::Depth32F, 1, 1, 1),
+                            fg::Access::DepthTarget);
+                        builder.skip(scene.items().empty() ? "no surface in the scene"
+                                                           : "no light casts a shadow");
+                    },
+                    [](const Data&, fg::PassContext&) {})
+                .atlas;
         return resources;
     }
     const fg::PersistentTexture atlas = graph.persistentTexture(
-        "shadow.atlas", fg::texture2DArray(fg::Format::Depth32F, plan.atlasSize, plan.atlasSize, plan.layers));
-    resources.atlas = graph.addPass<Data>("shadow.maps",
-        [&](fg::Builder& builder, Data& data) {
-            data.pass = this;
-            data.scene = &scene;
-            data.plan = &plan;
-            data.view = view;
-            data.castersKey = casters;
-            data.wasReset = atlas.wasReset;
-            data.atlas = builder.write(atlas.handle, fg::Access::DepthTarget);
-            builder.cacheBy(key);
-        },
-        [](const Data& data, fg::PassContext& context) { data.pass->draw(data, context); }).atlas;
+        "shadow.atlas",
+        fg::texture2DArray(fg::Format::Depth32F, plan.atlasSize, plan.atlasSize, plan.layers));
+    resources.atlas =
+        graph
+            .addPass<Data>(
+                "shadow.maps",
+                [&](fg::Builder& builder, Data& data) {
+                    data.pass = this;
+                    data.scene = &scene;
+                    data.plan = &plan;
+                    data.view = view;
+                    data.castersKey = casters;
+                    data.wasReset = atlas.wasReset;
+                    data.atlas = builder.write(atlas.handle, fg::Access::DepthTarget);
+                    builder.cacheBy(key);
+                },
+                [](const Data& data, fg::PassContext& context) { data.pass->draw(data, context); })
+            .atlas;
     return resources;
 }
 

@@ -14,14 +14,15 @@ namespace tyndall {
 class GpuScene;
 
 struct ShadowResources {
-    fg::BufferHandle views;    // ShadowView[]
-    fg::TextureHandle atlas;   // Depth32F array; absent where nothing casts a shadow
+    fg::BufferHandle views;  // ShadowView[]
+    fg::TextureHandle atlas; // Depth32F array; absent where nothing casts a shadow
 };
 
 class ShadowPass {
 public:
     /// `plan` and `scene` are read when the graph runs. One object draws for one executor.
-    ShadowResources addPasses(fg::FrameGraph& graph, const GpuScene& scene, const ShadowPlan& plan, const ViewResources& view);
+    ShadowResources addPasses(fg::FrameGraph& graph, const GpuScene& scene, const ShadowPlan& plan,
+                              const ViewResources& view);
     [[nodiscard]] uint64_t mapsDrawn() const { return mapsDrawn_; }
 
 private:

@@ -10,9 +10,10 @@
 namespace tyndall {
 namespace {
 
-constexpr int kBorder = 4;          // texels around a map that only filters see
-constexpr int kSmallestMap = 16;    // texels
-constexpr double kNearPart = 1e-5;  // near distance of perspective maps, of the scene's radius; reversed depth bears it
+constexpr int kBorder = 4;       // texels around a map that only filters see
+constexpr int kSmallestMap = 16; // texels
+constexpr double kNearPart =
+    1e-5; // near distance of perspective maps, of the scene's radius; reversed depth bears it
 constexpr double kWidestSpot = kPi / 3; // half angle; wider ones are drawn as six faces
 
 struct Frustum {
@@ -20,7 +21,7 @@ struct Frustum {
     double texelSize = 0; // metres, at distance 1 (perspective) or anywhere
     double range = 0;     // near distance or depth range
     bool perspective = false;
-    bool empty = false;   // nothing in it can be lit
+    bool empty = false; // nothing in it can be lit
 };
 
 /// One light's maps before they have a place in the atlas.
@@ -39,11 +40,14 @@ void perpendiculars(const dvec3& forward, dvec3& right, dvec3& up) {
 }
 
 /// From rows of an affine or perspective map.
-dmat4 fromRows(const dvec4& x, const dvec4& y, const dvec4& z, const dvec4& w) { return glm::transpose(dmat4(x, y, z, w)); }
+dmat4 fromRows(const dvec4& x, const dvec4& y, const dvec4& z, const dvec4& w) {
+    return glm::transpose(dmat4(x, y, z, w));
+}
 
 /// `tangent`: of half the angle that the map must show. Reversed depth near/distance, far plane at infinity.
-Frustum perspectiveFrustum(const dvec3& from, const dvec3& right, const dvec3& up, const dvec3& forward, double tangent,
-                           double nearDistance, int side, const dvec2& jitter) {
+Frustum perspectiveFrustum(const dvec3& from, const dvec3& right, const dvec3& up,
+                           const dvec3& forward, double tangent, double nearDistance, int side,
+                           const dvec2& jitter) {
     const double t = tangent * side / double(side - 2 * kBorder);
     const dvec4 w(forward, -glm::dot(forward, from));
     const dvec4 x = dvec4(right, -glm::dot(right, from)) / t + w * (2.0 * jitter.x / side);
@@ -72,11 +76,14 @@ LightSpace lightSpaceOf(const dvec3& forward, const Bounds& casters) {
     LightSpace space;
     space.forward = forward;
     perpendiculars(forward, space.right, space.up);
-    dvec3 low(std::numeric_limits<double>::infinity()), high(-std::numeric_limits<double>::infinity());
+    dvec3 low(std::numeric_limits<double>::infinity()),
+        high(-std::numeric_limits<double>::infinity());
     for (int i = 0; i < 8; ++i) {
-        const dvec3 corner((i & 1) ? casters.maximum.x : casters.minimum.x, (i & 2) ? casters.maximum.y : casters.minimum.y,
+        const dvec3 corner((i & 1) ? casters.maximum.x : casters.minimum.x,
+                           (i & 2) ? casters.maximum.y : casters.minimum.y,
                            (i & 4) ? casters.maximum.z : casters.minimum.z);
-        const dvec3 p(glm::dot(space.right, corner), glm::dot(space.up, corner), glm::dot(forward, corner));
+        const dvec3 p(glm::dot(space.right, corner), glm::dot(space.up, corner),
+                      glm::dot(forward, corner));
         low = glm::min(low, p);
         high = glm::max(high, p);
     }
@@ -89,7 +96,8 @@ LightSpace lightSpaceOf(const dvec3& forward, const Bounds& casters) {
     return space;
 }
 
-Frustum parallelFrustum(const LightSpace& space, const Window& window, int side, const dvec2& jitter) {
+Frustum parallelFrustum(const LightSpace& space, const Window& window, int side,
+                        const dvec2& jitter) {
     const dvec2 half = window.halfSize * (double(side) / double(side - 2 * kBorder));
     const dvec4 x(space.right / half.x, -window.centre.x / half.x + 2.0 * jitter.x / side);
     const dvec4 y(space.up / half.y, -window.centre.y / half.y + 2.0 * jitter.y / side);
@@ -107,20 +115,24 @@ struct Slice {
     dvec3 centre;
     double radius;
 };
-std::vector<Slice> viewSlices(const gpu::ViewData& view, const Bounds& casters, const ShadowSettings& settings) {
+std::vector<Slice> viewSlices(const gpu::ViewData& view, const Bounds& casters,
+                              const ShadowSettings& settings) {
     std::vector<Slice> slices;
     if ((view.flags & gpu::kViewOrthographic) != 0 || settings.cascades < 2) return slices;
     const dvec3 eye(view.cameraPosition), forward(view.cameraForward);
     double farthest = 0;
     for (int i = 0; i < 8; ++i)
-        farthest = std::max(farthest, glm::length(dvec3((i & 1) ? casters.maximum.x : casters.minimum.x,
-                                                        (i & 2) ? casters.maximum.y : casters.minimum.y,
-                                                        (i & 4) ? casters.maximum.z : casters.minimum.z) - eye));
+        farthest =
+            std::max(farthest, glm::length(dvec3((i & 1) ? casters.maximum.x : casters.minimum.x,
+                                                 (i & 2) ? casters.maximum.y : casters.minimum.y,
+                                                 (i & 4) ? casters.maximum.z : casters.minimum.z) -
+                                           eye));
     // In steps of a quarter octave of the scene's size, so that small moves change nothing; between the steps lies the centre
     // of the scene, a place where cameras like to be.
     const double diagonal = glm::length(casters.extent());
     if (!(diagonal > 0)) return slices;
-    farthest = diagonal * std::exp2((std::ceil(4.0 * std::log2(farthest / diagonal) + 0.5) - 0.5) / 4.0);
+    farthest =
+        diagonal * std::exp2((std::ceil(4.0 * std::log2(farthest / diagonal) + 0.5) - 0.5) / 4.0);
     const double nearDistance = std::max(double(view.cameraPosition.w), 1e-3 * farthest);
     if (!(farthest > 2.0 * nearDistance)) return slices;
     // Half the diagonal of the view at distance 1, from the unjittered scale of the matrix: |clip row| = 1/tan.
@@ -132,7 +144,8 @@ std::vector<Slice> viewSlices(const gpu::ViewData& view, const Bounds& casters, 
         return 1.0 / std::max(glm::length(r), 1e-12);
     };
     // Rounded up: the matrix is in single precision and its noise turns with the camera.
-    const double tanX = tangent(0), tanY = tangent(1), diagonal2 = (std::round((tanX * tanX + tanY * tanY) * 4096.0) + 1.0) / 4096.0;
+    const double tanX = tangent(0), tanY = tangent(1),
+                 diagonal2 = (std::round((tanX * tanX + tanY * tanY) * 4096.0) + 1.0) / 4096.0;
     double begin = 0;
     for (int i = 1; i < settings.cascades; ++i) {
         const double part = double(i) / settings.cascades;
@@ -141,8 +154,9 @@ std::vector<Slice> viewSlices(const gpu::ViewData& view, const Bounds& casters, 
         const double end = std::lerp(even, ratio, double(settings.cascadeSplit));
         // Smallest ball around the slice, centre on the axis.
         double middle = std::min(0.5 * (begin + end) * (1.0 + diagonal2), end);
-        const double radius = std::sqrt(std::max((end - middle) * (end - middle) + end * end * diagonal2,
-                                                 (begin - middle) * (begin - middle) + begin * begin * diagonal2));
+        const double radius =
+            std::sqrt(std::max((end - middle) * (end - middle) + end * end * diagonal2,
+                               (begin - middle) * (begin - middle) + begin * begin * diagonal2));
         slices.push_back({eye + forward * middle, radius});
         begin = end;
     }
@@ -156,21 +170,25 @@ Window snappedWindow(const LightSpace& space, const Slice& slice, int side) {
     return {glm::round(centre / texel) * texel, dvec2(0.5 * texel * double(side - 2 * kBorder))};
 }
 
-std::vector<Frustum> directionalViews(const gpu::LightData& light, const ShadowRequest& request, const ShadowSettings& settings,
-                                      int side, const dvec2& jitter) {
-    const dvec3 forward = glm::normalize(dvec3(light.samplePoint.w > 0 ? light.samplePoint : light.direction));
+std::vector<Frustum> directionalViews(const gpu::LightData& light, const ShadowRequest& request,
+                                      const ShadowSettings& settings, int side,
+                                      const dvec2& jitter) {
+    const dvec3 forward =
+        glm::normalize(dvec3(light.samplePoint.w > 0 ? light.samplePoint : light.direction));
     const LightSpace space = lightSpaceOf(forward, request.casters);
     std::vector<Frustum> views;
     if ((light.flags & gpu::kLightFromEnvironment) == 0)
         for (const Slice& slice : viewSlices(request.view->data, request.casters, settings)) {
             if (slice.radius >= std::max(space.casters.halfSize.x, space.casters.halfSize.y)) break;
-            views.push_back(parallelFrustum(space, snappedWindow(space, slice, side), side, jitter));
+            views.push_back(
+                parallelFrustum(space, snappedWindow(space, slice, side), side, jitter));
         }
     views.push_back(parallelFrustum(space, space.casters, side, jitter));
     return views;
 }
 
-std::vector<Frustum> localViews(const gpu::LightData& light, double nearDistance, int side, const dvec2& jitter) {
+std::vector<Frustum> localViews(const gpu::LightData& light, double nearDistance, int side,
+                                const dvec2& jitter) {
     const dvec3 from(light.samplePoint.w > 0 ? light.samplePoint : light.position);
     std::vector<Frustum> views;
     if (light.type == gpu::kLightSpot && double(light.axisY.w) >= std::cos(kWidestSpot)) {
@@ -178,7 +196,9 @@ std::vector<Frustum> localViews(const gpu::LightData& light, double nearDistance
         dvec3 right, up;
         perpendiculars(forward, right, up);
         const double cosine = std::min(double(light.axisY.w), std::cos(1e-3));
-        views.push_back(perspectiveFrustum(from, right, up, forward, std::sqrt(1.0 - cosine * cosine) / cosine, nearDistance, side, jitter));
+        views.push_back(perspectiveFrustum(from, right, up, forward,
+                                           std::sqrt(1.0 - cosine * cosine) / cosine, nearDistance,
+                                           side, jitter));
         return views;
     }
     for (int face = 0; face < 6; ++face) {
@@ -186,12 +206,15 @@ std::vector<Frustum> localViews(const gpu::LightData& light, double nearDistance
         forward[face / 2] = (face & 1) ? -1.0 : 1.0;
         right[(face / 2 + 1) % 3] = 1.0;
         const dvec3 up = glm::cross(right, forward);
-        Frustum view = perspectiveFrustum(from, right, up, forward, 1.0, nearDistance, side, jitter);
+        Frustum view =
+            perspectiveFrustum(from, right, up, forward, 1.0, nearDistance, side, jitter);
         if (light.type != gpu::kLightPoint) {
             // A spot's cone and a rect's light stay on one side of a plane: does any corner of the face reach there?
             double most = -1;
             for (int corner = 0; corner < 4; ++corner)
-                most = std::max(most, glm::dot(dvec3(light.direction), forward + ((corner & 1) ? right : -right) + ((corner & 2) ? up : -up)));
+                most = std::max(most, glm::dot(dvec3(light.direction),
+                                               forward + ((corner & 1) ? right : -right) +
+                                                   ((corner & 2) ? up : -up)));
             view.empty = most <= 1e-6;
         }
         views.push_back(view);
@@ -202,11 +225,13 @@ std::vector<Frustum> localViews(const gpu::LightData& light, double nearDistance
 int sideOf(const gpu::LightData& light, const ShadowSettings& settings, int shrunk) {
     int wanted = settings.resolution;
     if (light.type == gpu::kLightDirectional) {
-        if ((light.flags & gpu::kLightFromEnvironment) != 0) wanted = settings.environmentResolution;
+        if ((light.flags & gpu::kLightFromEnvironment) != 0)
+            wanted = settings.environmentResolution;
     } else if (light.type != gpu::kLightSpot || double(light.axisY.w) < std::cos(kWidestSpot)) {
         wanted = settings.localResolution;
     }
-    return std::max(std::min(powerOfTwo(wanted), powerOfTwo(settings.atlasSize)) >> shrunk, kSmallestMap);
+    return std::max(std::min(powerOfTwo(wanted), powerOfTwo(settings.atlasSize)) >> shrunk,
+                    kSmallestMap);
 }
 
 uint64_t hashView(const Frustum& frustum, const gpu::ShadowView& view, uint64_t salt) {
@@ -215,7 +240,8 @@ uint64_t hashView(const Frustum& frustum, const gpu::ShadowView& view, uint64_t 
     const mat4 clip(frustum.clipFromRender);
     for (int c = 0; c < 4; ++c)
         for (int r = 0; r < 4; r += 2)
-            hash = fg::mixHash(hash, uint64_t(std::bit_cast<uint32_t>(clip[c][r])) << 32 | std::bit_cast<uint32_t>(clip[c][r + 1]));
+            hash = fg::mixHash(hash, uint64_t(std::bit_cast<uint32_t>(clip[c][r])) << 32 |
+                                         std::bit_cast<uint32_t>(clip[c][r + 1]));
     return hash;
 }
 
@@ -224,7 +250,9 @@ class Atlas {
 public:
     Atlas(int size, int layers) : cells_(size / kSmallestMap), layers_(layers) {}
     /// Cells that squares of this side take.
-    static uint64_t cellsOf(int side) { return uint64_t(side / kSmallestMap) * uint64_t(side / kSmallestMap); }
+    static uint64_t cellsOf(int side) {
+        return uint64_t(side / kSmallestMap) * uint64_t(side / kSmallestMap);
+    }
     void place(gpu::ShadowView& view, int side) {
         const uint64_t perLayer = uint64_t(cells_) * uint64_t(cells_);
         uint32_t x = 0, y = 0;
@@ -233,7 +261,8 @@ public:
             x |= uint32_t(within >> (2 * bit) & 1u) << bit;
             y |= uint32_t(within >> (2 * bit + 1) & 1u) << bit;
         }
-        view.atlas = vec4(float(x * kSmallestMap), float(y * kSmallestMap), float(side), float(cells_ * kSmallestMap));
+        view.atlas = vec4(float(x * kSmallestMap), float(y * kSmallestMap), float(side),
+                          float(cells_ * kSmallestMap));
         view.layer = int(next_ / perLayer);
         CHECK(view.layer < layers_, "shadow maps outgrew the atlas that was sized for them");
         next_ += cellsOf(side);
@@ -250,11 +279,14 @@ dvec2 jitterOf(const gpu::ViewData& view, uint32_t light) {
     return lowDiscrepancyPoint(view.frameIndex, fg::mixHash(uint64_t(view.seed) + 77, light)) - 0.5;
 }
 
-gpu::ShadowView describe(const Frustum& frustum, int count, bool soft, const ShadowSettings& settings) {
+gpu::ShadowView describe(const Frustum& frustum, int count, bool soft,
+                         const ShadowSettings& settings) {
     gpu::ShadowView view{};
-    const dmat4 shadowFromClip = fromRows({0.5, 0, 0, 0.5}, {0, 0.5, 0, 0.5}, {0, 0, 1, 0}, {0, 0, 0, 1});
+    const dmat4 shadowFromClip =
+        fromRows({0.5, 0, 0, 0.5}, {0, 0.5, 0, 0.5}, {0, 0, 1, 0}, {0, 0, 0, 1});
     view.shadowFromRender = mat4(shadowFromClip * frustum.clipFromRender);
-    view.bias = vec4(float(frustum.texelSize), frustum.perspective ? 1.0f : 0.0f, float(frustum.range), float(kBorder - 1));
+    view.bias = vec4(float(frustum.texelSize), frustum.perspective ? 1.0f : 0.0f,
+                     float(frustum.range), float(kBorder - 1));
     view.count = count;
     view.taps = settings.taps;
     view.searchTaps = soft ? settings.searchTaps : 0;
@@ -262,22 +294,30 @@ gpu::ShadowView describe(const Frustum& frustum, int count, bool soft, const Sha
 }
 
 /// How many maps the light gets; the same for every size of them.
-int viewCount(const gpu::LightData& light, const ShadowRequest& request, const ShadowSettings& settings) {
-    if (light.type == gpu::kLightDirectional) return int(directionalViews(light, request, settings, 256, dvec2(0)).size());
+int viewCount(const gpu::LightData& light, const ShadowRequest& request,
+              const ShadowSettings& settings) {
+    if (light.type == gpu::kLightDirectional)
+        return int(directionalViews(light, request, settings, 256, dvec2(0)).size());
     return int(localViews(light, 1.0, 256, dvec2(0)).size());
 }
 
-uint64_t cellsWanted(std::span<const gpu::LightData> lights, std::span<const PlannedLight> planned, const ShadowSettings& settings, int shrunk) {
+uint64_t cellsWanted(std::span<const gpu::LightData> lights, std::span<const PlannedLight> planned,
+                     const ShadowSettings& settings, int shrunk) {
     uint64_t cells = 0;
-    for (const PlannedLight& p : planned) cells += uint64_t(p.count) * Atlas::cellsOf(sideOf(lights[p.light], settings, shrunk));
+    for (const PlannedLight& p : planned)
+        cells += uint64_t(p.count) * Atlas::cellsOf(sideOf(lights[p.light], settings, shrunk));
     return cells;
 }
 
 /// Halves the maps until all fit, then gives up lights from the end; sizes the atlas to what is left.
-void fitAtlas(std::span<const gpu::LightData> lights, std::vector<PlannedLight>& planned, const ShadowSettings& settings, ShadowPlan& plan) {
+void fitAtlas(std::span<const gpu::LightData> lights, std::vector<PlannedLight>& planned,
+              const ShadowSettings& settings, ShadowPlan& plan) {
     const int fullSize = powerOfTwo(settings.atlasSize);
-    const uint64_t capacity = Atlas::cellsOf(fullSize) * uint64_t(std::max(settings.atlasLayers, 1));
-    while (cellsWanted(lights, planned, settings, plan.shrunk) > capacity && (fullSize >> plan.shrunk) > kSmallestMap) ++plan.shrunk;
+    const uint64_t capacity =
+        Atlas::cellsOf(fullSize) * uint64_t(std::max(settings.atlasLayers, 1));
+    while (cellsWanted(lights, planned, settings, plan.shrunk) > capacity &&
+           (fullSize >> plan.shrunk) > kSmallestMap)
+        ++plan.shrunk;
     while (cellsWanted(lights, planned, settings, plan.shrunk) > capacity) {
         planned.pop_back();
         ++plan.lightsDropped;
@@ -289,26 +329,30 @@ void fitAtlas(std::span<const gpu::LightData> lights, std::vector<PlannedLight>&
         p.side = sideOf(lights[p.light], settings, plan.shrunk);
         largest = std::max(largest, p.side);
     }
-    while (plan.atlasSize > largest && Atlas::cellsOf(plan.atlasSize / 2) >= cells) plan.atlasSize /= 2;
+    while (plan.atlasSize > largest && Atlas::cellsOf(plan.atlasSize / 2) >= cells)
+        plan.atlasSize /= 2;
     const uint64_t perLayer = Atlas::cellsOf(plan.atlasSize);
     plan.layers = int((cells + perLayer - 1) / perLayer);
 }
 
 } // namespace
 
-ShadowPlan planShadows(std::span<gpu::LightData> lights, std::span<const uint32_t> chosen, const ShadowRequest& request,
-                       const ShadowSettings& settings) {
+ShadowPlan planShadows(std::span<gpu::LightData> lights, std::span<const uint32_t> chosen,
+                       const ShadowRequest& request, const ShadowSettings& settings) {
     ShadowPlan plan;
     for (gpu::LightData& light : lights) light.shadowIndex = -1;
     if (request.casters.empty() || chosen.empty() || !settings.enabled) return plan;
     CHECK(request.view, "shadows are planned for a view");
 
     std::vector<PlannedLight> planned;
-    for (const uint32_t light : chosen) planned.push_back({light, 0, viewCount(lights[light], request, settings)});
+    for (const uint32_t light : chosen)
+        planned.push_back({light, 0, viewCount(lights[light], request, settings)});
     fitAtlas(lights, planned, settings, plan);
     if (planned.empty()) return plan;
     // Not by importance: places in the atlas, and with them kept maps, stay while importances change.
-    std::sort(planned.begin(), planned.end(), [](const PlannedLight& a, const PlannedLight& b) { return a.side != b.side ? a.side > b.side : a.light < b.light; });
+    std::sort(planned.begin(), planned.end(), [](const PlannedLight& a, const PlannedLight& b) {
+        return a.side != b.side ? a.side > b.side : a.light < b.light;
+    });
 
     const gpu::ViewData& view = request.view->data;
     const bool converge = (view.flags & gpu::kViewConverge) != 0;
@@ -318,9 +362,10 @@ ShadowPlan planShadows(std::span<gpu::LightData> lights, std::span<const uint32_
     for (const PlannedLight& p : planned) {
         gpu::LightData& light = lights[p.light];
         const dvec2 jitter = jitterOf(view, p.light);
-        const std::vector<Frustum> frusta = light.type == gpu::kLightDirectional
-                                                ? directionalViews(light, request, settings, p.side, jitter)
-                                                : localViews(light, std::max(kNearPart * radius, 1e-30), p.side, jitter);
+        const std::vector<Frustum> frusta =
+            light.type == gpu::kLightDirectional
+                ? directionalViews(light, request, settings, p.side, jitter)
+                : localViews(light, std::max(kNearPart * radius, 1e-30), p.side, jitter);
         CHECK(int(frusta.size()) <= p.count, "a light has more shadow maps than were counted");
         const bool soft = !converge && (light.type == gpu::kLightRect || light.direction.w > 0);
         light.shadowIndex = int(plan.views.size());

@@ -16,12 +16,12 @@ namespace tyndall {
 
 /// All shadow maps of one frame.
 struct ShadowPlan {
-    std::vector<gpu::ShadowView> views;  // in the order of `Lights`' shadow indices
-    std::vector<mat4> clipFromRender;    // of each view, for drawing
-    std::vector<uint64_t> keys;          // of each view: what its picture depends on beside the casters
-    int atlasSize = 0, layers = 0;       // texels; 0: no map
-    int shrunk = 0;                      // times that all maps were halved to fit
-    int lightsDropped = 0;               // lights at the end of the list that did not fit at all
+    std::vector<gpu::ShadowView> views; // in the order of `Lights`' shadow indices
+    std::vector<mat4> clipFromRender;   // of each view, for drawing
+    std::vector<uint64_t> keys;    // of each view: what its picture depends on beside the casters
+    int atlasSize = 0, layers = 0; // texels; 0: no map
+    int shrunk = 0;                // times that all maps were halved to fit
+    int lightsDropped = 0;         // lights at the end of the list that did not fit at all
 };
 
 struct ShadowRequest {
@@ -31,7 +31,7 @@ struct ShadowRequest {
 
 /// Plans the maps of `lights[i]` for i in `chosen`, the most important first, and sets their `shadowIndex` (all others get
 /// -1). Lights must have this frame's sample points. Without casters there are no maps.
-ShadowPlan planShadows(std::span<gpu::LightData> lights, std::span<const uint32_t> chosen, const ShadowRequest& request,
-                       const ShadowSettings& settings);
+ShadowPlan planShadows(std::span<gpu::LightData> lights, std::span<const uint32_t> chosen,
+                       const ShadowRequest& request, const ShadowSettings& settings);
 
 } // namespace tyndall

@@ -52,7 +52,9 @@ gpu::SurfaceLightParams surfaceLightParams(const SurfaceLightSettings& settings,
     params.environmentSamples = uint32_t(settings.environmentSamples);
     params.roughnessOfMap = converge ? settings.convergeMapRoughness : settings.mapRoughness;
     // smoothstep needs two different ends.
-    params.roughnessOfLights = std::max(converge ? settings.convergeLightsRoughness : settings.lightsRoughness, params.roughnessOfMap + 1e-3f);
+    params.roughnessOfLights =
+        std::max(converge ? settings.convergeLightsRoughness : settings.lightsRoughness,
+                 params.roughnessOfMap + 1e-3f);
     params.materialOcclusion = settings.materialOcclusion ? 1u : 0u;
     return params;
 }

@@ -40,13 +40,17 @@ AlphaLevel halved(const AlphaLevel& level) {
     AlphaLevel next{std::max(1, level.width / 2), std::max(1, level.height / 2), {}};
     next.values.resize(size_t(next.width) * size_t(next.height));
     for (int y = 0; y < next.height; ++y) {
-        const int y0 = y * level.height / next.height, y1 = std::max(y0 + 1, (y + 1) * level.height / next.height);
+        const int y0 = y * level.height / next.height,
+                  y1 = std::max(y0 + 1, (y + 1) * level.height / next.height);
         for (int x = 0; x < next.width; ++x) {
-            const int x0 = x * level.width / next.width, x1 = std::max(x0 + 1, (x + 1) * level.width / next.width);
+            const int x0 = x * level.width / next.width,
+                      x1 = std::max(x0 + 1, (x + 1) * level.width / next.width);
             float sum = 0;
             for (int j = y0; j < y1; ++j)
-                for (int i = x0; i < x1; ++i) sum += level.values[size_t(j) * size_t(level.width) + size_t(i)];
-            next.values[size_t(y) * size_t(next.width) + size_t(x)] = sum / float((y1 - y0) * (x1 - x0));
+                for (int i = x0; i < x1; ++i)
+                    sum += level.values[size_t(j) * size_t(level.width) + size_t(i)];
+            next.values[size_t(y) * size_t(next.width) + size_t(x)] =
+                sum / float((y1 - y0) * (x1 - x0));
         }
     }
     return next;
@@ -97,7 +101,8 @@ std::array<float, 16> alphaCutoffs(const ImageData& image, float cutoff) {
         }
         level = halved(level);
         // With a handful of texels a level cannot have the right coverage; the last level that can speaks for them.
-        cutoffs[mip] = level.values.size() >= 16 ? cutoffForCoverage(level.values, covered) : cutoffs[mip - 1];
+        cutoffs[mip] =
+            level.values.size() >= 16 ? cutoffForCoverage(level.values, covered) : cutoffs[mip - 1];
     }
     return cutoffs;
 }
@@ -119,12 +124,15 @@ void TextureUpload::forget() {
     textures_.clear();
 }
 
-Result<fg::StaticTexture> TextureUpload::uploadImage(const ImageData& image, ColorSpace space, const gl::SamplerSpec& sampler) {
-    const std::string name = fmt::format("texture {}{}", image.name, space == ColorSpace::Srgb ? " (sRGB)" : "");
+Result<fg::StaticTexture> TextureUpload::uploadImage(const ImageData& image, ColorSpace space,
+                                                     const gl::SamplerSpec& sampler) {
+    const std::string name =
+        fmt::format("texture {}{}", image.name, space == ColorSpace::Srgb ? " (sRGB)" : "");
     const int limit = gl::currentCapabilities().limits.textureSize;
     if (image.width > limit || image.height > limit)
-        return Error{fmt::format("image '{}' is {}x{} pixels; this driver takes textures up to {} pixels a side", image.name, image.width,
-                                 image.height, limit)};
+        return Error{fmt::format(
+            "image '{}' is {}x{} pixels; this driver takes textures up to {} pixels a side",
+            image.name, image.width, image.height, limit)};
     gl::TextureSpec spec;
     spec.internalFormat = space == ColorSpace::Srgb ? GL_SRGB8_ALPHA8 : GL_RGBA8;
     spec.width = image.width;
@@ -144,7 +152,8 @@ Result<fg::StaticTexture> TextureUpload::obtain(const Scene& scene, int index, C
     const ImageData& image = scene.images[size_t(texture.image)];
     if (image.rgba.empty()) return white_;
     const Sampler& s = texture.sampler;
-    const SamplerKey samplerKey{int(s.magnify), int(s.minify), int(s.mip), int(s.wrapU), int(s.wrapV)};
+    const SamplerKey samplerKey{int(s.magnify), int(s.minify), int(s.mip), int(s.wrapU),
+                                int(s.wrapV)};
     const Key key{texture.image, space, samplerKey};
     if (const auto found = textures_.find(key); found != textures_.end()) return found->second;
 
@@ -153,7 +162,8 @@ Result<fg::StaticTexture> TextureUpload::obtain(const Scene& scene, int index, C
     for (const auto& [other, uploaded] : textures_) {
         if (std::get<0>(other) != texture.image || std::get<1>(other) != space) continue;
         const gl::Texture& first = executor_.texture(uploaded);
-        gl::Texture view = first.view(image.name, GL_TEXTURE_2D, first.spec().internalFormat, 0, first.spec().mips, 0, 1);
+        gl::Texture view = first.view(image.name, GL_TEXTURE_2D, first.spec().internalFormat, 0,
+                                      first.spec().mips, 0, 1);
         return textures_[key] = executor_.registerTexture(image.name, std::move(view), sampler);
     }
     Result<fg::StaticTexture> uploaded = uploadImage(image, space, sampler);

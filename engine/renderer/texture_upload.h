@@ -40,7 +40,8 @@ public:
 private:
     using SamplerKey = std::tuple<int, int, int, int, int>;
     using Key = std::tuple<int, ColorSpace, SamplerKey>; // image
-    Result<fg::StaticTexture> uploadImage(const ImageData& image, ColorSpace space, const gl::SamplerSpec& sampler);
+    Result<fg::StaticTexture> uploadImage(const ImageData& image, ColorSpace space,
+                                          const gl::SamplerSpec& sampler);
 
     fg::Executor& executor_;
     float anisotropy_ = 1;

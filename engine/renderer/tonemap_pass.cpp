@@ -12,32 +12,49 @@ constexpr const char* kCurveNames[] = {"linear", "aces", "agx", "neutral"};
 const SettingDesc kPostSettings[] = {
     TYNDALL_ENUM(PostSettings, curve, "post.toneCurve", "Tone curve", kCurveNames, ToneCurve::Agx,
                  "From light to display: linear (clipped), ACES, AgX or Khronos PBR Neutral."),
-    TYNDALL_BOOL(PostSettings, dither, "post.dither", "Dither", true, "Noise of one 8-bit step hides banding."),
-    TYNDALL_FLOAT(PostSettings, exposureCompensation, "post.exposureCompensation", "Exposure compensation", "EV", -20, 20, 0,
-                  "Brightens (positive) or darkens the display image; linear output does not change."),
+    TYNDALL_BOOL(PostSettings, dither, "post.dither", "Dither", true,
+                 "Noise of one 8-bit step hides banding."),
+    TYNDALL_FLOAT(
+        PostSettings, exposureCompensation, "post.exposureCompensation", "Exposure compensation",
+        "EV", -20, 20, 0,
+        "Brightens (positive) or darkens the display image; linear output does not change."),
 };
 
 } // namespace
 
 std::span<const SettingDesc> postSettings() { return kPostSettings; }
 
-Display addTonemapPass(fg::FrameGraph& graph, fg::TextureHandle color, float ev100, const PostSettings& settings, uint32_t seed) {
-    struct Data { fg::TextureHandle color; Display display; gpu::TonemapParams params; };
-    return graph.addPass<Data>("tonemap",
-        [&](fg::Builder& builder, Data& data) {
-            const fg::TextureDesc size = graph.desc(color);
-            data.color = builder.read(color);
-            data.display.image = builder.create("display", fg::texture2D(fg::Format::RGBA8, size.width, size.height));
-            data.display.invalidPixels = builder.create("display.invalidPixels", fg::BufferDesc{2 * sizeof(uint32_t)});
-            const float exposure = std::exp2(settings.exposureCompensation - ev100) / 1.2f;
-            data.params = {exposure, uint32_t(settings.curve), settings.dither ? 1u : 0u, seed};
-        },
-        [](const Data& data, fg::PassContext& context) {
-            context.clearBuffer(data.display.invalidPixels, 0);
-            context.barrier(fg::Access::StorageWrite);
-            context.compute("post/tonemap.comp").bind("image", data.color).bind("display", data.display.image)
-                .bind("InvalidPixels", data.display.invalidPixels).params(data.params).dispatchOver(data.display.image);
-        }).display;
+Display addTonemapPass(fg::FrameGraph& graph, fg::TextureHandle color, float ev100,
+                       const PostSettings& settings, uint32_t seed) {
+    struct Data {
+        fg::TextureHandle color;
+        Display display;
+        gpu::TonemapParams params;
+    };
+    return graph
+        .addPass<Data>(
+            "tonemap",
+            [&](fg::Builder& builder, Data& data) {
+                const fg::TextureDesc size = graph.desc(color);
+                data.color = builder.read(color);
+                data.display.image = builder.create(
+                    "display", fg::texture2D(fg::Format::RGBA8, size.width, size.height));
+                data.display.invalidPixels =
+                    builder.create("display.invalidPixels", fg::BufferDesc{2 * sizeof(uint32_t)});
+                const float exposure = std::exp2(settings.exposureCompensation - ev100) / 1.2f;
+                data.params = {exposure, uint32_t(settings.curve), settings.dither ? 1u : 0u, seed};
+            },
+            [](const Data& data, fg::PassContext& context) {
+                context.clearBuffer(data.display.invalidPixels, 0);
+                context.barrier(fg::Access::StorageWrite);
+                context.compute("post/tonemap.comp")
+                    .bind("image", data.color)
+                    .bind("display", data.display.image)
+                    .bind("InvalidPixels", data.display.invalidPixels)
+                    .params(data.params)
+                    .dispatchOver(data.display.image);
+            })
+        .display;
 }
 
 } // namespace tyndall

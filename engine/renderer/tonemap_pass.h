@@ -16,11 +16,13 @@ struct PostSettings {
 std::span<const SettingDesc> postSettings();
 
 struct Display {
-    fg::TextureHandle image;          // RGBA8, sRGB-encoded
-    fg::BufferHandle invalidPixels;   // two counters: non-finite, negative (see shaders/post/tonemap.comp)
+    fg::TextureHandle image; // RGBA8, sRGB-encoded
+    fg::BufferHandle
+        invalidPixels; // two counters: non-finite, negative (see shaders/post/tonemap.comp)
 };
 
 /// `color` in nits at EV100 `ev100`: 1.2·2^EV100 nits are display white (ISO 2720's saturation-based exposure).
-Display addTonemapPass(fg::FrameGraph& graph, fg::TextureHandle color, float ev100, const PostSettings& settings, uint32_t seed);
+Display addTonemapPass(fg::FrameGraph& graph, fg::TextureHandle color, float ev100,
+                       const PostSettings& settings, uint32_t seed);
 
 } // namespace tyndall

@@ -34,7 +34,8 @@ dmat4 withoutScale(const dmat4& worldFromCamera) {
     // Gram-Schmidt from the viewing axis: shear and mirror go as well, as a lens has neither.
     const dvec3 z = glm::normalize(dvec3(m[2]));
     dvec3 x = dvec3(m[0]) - z * glm::dot(dvec3(m[0]), z);
-    if (!(glm::dot(x, x) > 0)) x = std::abs(z.y) < 0.9 ? glm::cross(dvec3(0, 1, 0), z) : glm::cross(dvec3(1, 0, 0), z);
+    if (!(glm::dot(x, x) > 0))
+        x = std::abs(z.y) < 0.9 ? glm::cross(dvec3(0, 1, 0), z) : glm::cross(dvec3(1, 0, 0), z);
     x = glm::normalize(x);
     m[0] = dvec4(x, 0);
     m[1] = dvec4(glm::cross(z, x), 0);
@@ -44,8 +45,10 @@ dmat4 withoutScale(const dmat4& worldFromCamera) {
 
 } // namespace
 
-dvec3 chooseRenderOrigin(const dvec3& cameraPosition, const Bounds& sceneBounds, const dvec3& previousOrigin) {
-    const double radius = sceneBounds.empty() ? 1.0 : std::max(1e-3, 0.5 * glm::length(sceneBounds.extent()));
+dvec3 chooseRenderOrigin(const dvec3& cameraPosition, const Bounds& sceneBounds,
+                         const dvec3& previousOrigin) {
+    const double radius =
+        sceneBounds.empty() ? 1.0 : std::max(1e-3, 0.5 * glm::length(sceneBounds.extent()));
     if (glm::length(cameraPosition - previousOrigin) < 8.0 * radius) return previousOrigin;
     // Close enough to the world's origin that single precision loses nothing: the common case, and the simplest numbers.
     if (glm::length(cameraPosition) < 8.0 * radius) return dvec3(0);
@@ -66,7 +69,8 @@ ViewResources makeView(const ViewRequest& request) {
 
     const bool parallel = camera.type == CameraType::Orthographic;
     const double farDistance = 4.0 * request.sceneRadius;
-    const dmat4 clipFromView = jitterClip * (parallel ? orthographic(camera, aspect, farDistance) : perspective(camera, aspect));
+    const dmat4 clipFromView = jitterClip * (parallel ? orthographic(camera, aspect, farDistance)
+                                                      : perspective(camera, aspect));
     const dmat4 viewFromRender = glm::inverse(renderFromCamera);
 
     ViewResources view;
@@ -78,19 +82,22 @@ ViewResources makeView(const ViewRequest& request) {
     data.viewFromRender = mat4(viewFromRender);
     data.cameraPosition = vec4(vec3(renderFromCamera[3]), parallel ? 0.0f : float(camera.znear));
     data.cameraForward = vec4(-vec3(renderFromCamera[2]), float(request.sceneRadius));
-    data.size = vec4(float(request.width), float(request.height), 1.0f / float(request.width), 1.0f / float(request.height));
+    data.size = vec4(float(request.width), float(request.height), 1.0f / float(request.width),
+                     1.0f / float(request.height));
     const dvec2 frame = lowDiscrepancyPoint(request.frameIndex, fg::mixHash(request.seed, 2));
     data.jitter = vec4(vec2(jitter), vec2(frame));
     data.frameIndex = request.frameIndex;
     data.seed = request.seed;
-    data.flags = (parallel ? gpu::kViewOrthographic : 0u) | (request.converge ? gpu::kViewConverge : 0u);
+    data.flags =
+        (parallel ? gpu::kViewOrthographic : 0u) | (request.converge ? gpu::kViewConverge : 0u);
     data.padding0 = 0;
     return view;
 }
 
 std::array<vec4, 5> frustumPlanes(const gpu::ViewData& view) {
     const mat4 rows = glm::transpose(view.clipFromRender);
-    std::array<vec4, 5> planes = {rows[3] + rows[0], rows[3] - rows[0], rows[3] + rows[1], rows[3] - rows[1], rows[3] - rows[2]};
+    std::array<vec4, 5> planes = {rows[3] + rows[0], rows[3] - rows[0], rows[3] + rows[1],
+                                  rows[3] - rows[1], rows[3] - rows[2]};
     for (vec4& plane : planes) plane /= std::max(glm::length(vec3(plane)), 1e-30f);
     return planes;
 }

@@ -11,7 +11,8 @@ namespace tyndall {
 
 /// Whole metres near the camera, moved only when the camera is farther away than a few scene sizes, so that what was
 /// cached in render space stays valid while the camera flies about the scene.
-dvec3 chooseRenderOrigin(const dvec3& cameraPosition, const Bounds& sceneBounds, const dvec3& previousOrigin);
+dvec3 chooseRenderOrigin(const dvec3& cameraPosition, const Bounds& sceneBounds,
+                         const dvec3& previousOrigin);
 
 struct ViewRequest {
     const Camera* camera = nullptr;

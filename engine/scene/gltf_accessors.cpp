@@ -13,7 +13,8 @@
 namespace tyndall {
 namespace {
 
-constexpr int kByte = 5120, kUnsignedByte = 5121, kShort = 5122, kUnsignedShort = 5123, kUnsignedInt = 5125, kFloat = 5126;
+constexpr int kByte = 5120, kUnsignedByte = 5121, kShort = 5122, kUnsignedShort = 5123,
+              kUnsignedInt = 5125, kFloat = 5126;
 constexpr uint64_t kMaxUnpackedBytes = uint64_t(1) << 31;
 
 uint64_t numberOr(const Json& json, const char* key, uint64_t otherwise) {
@@ -22,17 +23,17 @@ uint64_t numberOr(const Json& json, const char* key, uint64_t otherwise) {
 }
 
 /// Is [offset, offset + length) inside size bytes? No sum can overflow.
-bool inside(uint64_t offset, uint64_t length, uint64_t size) { return offset <= size && length <= size - offset; }
+bool inside(uint64_t offset, uint64_t length, uint64_t size) {
+    return offset <= size && length <= size - offset;
+}
 
-template <typename T>
-T load(const char* bytes) {
+template <typename T> T load(const char* bytes) {
     T value;
     std::memcpy(&value, bytes, sizeof(T));
     return value;
 }
 
-template <typename T>
-float integerToFloat(const char* bytes, bool normalized) {
+template <typename T> float integerToFloat(const char* bytes, bool normalized) {
     const auto value = float(load<T>(bytes));
     if (!normalized) return value;
     return std::max(value / float(std::numeric_limits<T>::max()), -1.0f);
@@ -58,7 +59,9 @@ uint32_t unsignedComponent(const char* bytes, int type) {
 /// Columns of matrices begin at multiples of four bytes (glTF 2.0 section 3.6.2.4).
 struct Layout {
     size_t columns = 1, rows = 1, componentSize = 1;
-    [[nodiscard]] size_t columnBytes() const { return columns == 1 ? rows * componentSize : (rows * componentSize + 3) / 4 * 4; }
+    [[nodiscard]] size_t columnBytes() const {
+        return columns == 1 ? rows * componentSize : (rows * componentSize + 3) / 4 * 4;
+    }
     [[nodiscard]] size_t bytes() const { return columns * columnBytes(); }
 };
 
@@ -66,8 +69,10 @@ Layout layoutOf(const Json& accessor) {
     const std::string type = accessor.at("type").get<std::string>();
     Layout layout;
     layout.componentSize = componentBytes(accessor.at("componentType").get<int>());
-    if (type.starts_with("MAT")) layout.columns = layout.rows = size_t(type[3] - '0');
-    else layout.rows = size_t(componentCount(type));
+    if (type.starts_with("MAT"))
+        layout.columns = layout.rows = size_t(type[3] - '0');
+    else
+        layout.rows = size_t(componentCount(type));
     return layout;
 }
 
@@ -81,13 +86,18 @@ bool listed(std::string_view list, std::string_view word) {
 }
 
 /// The parameters that the decoders assert on. Empty when they are right.
-std::string wrongMeshopt(const std::string& mode, const std::string& filter, uint64_t count, uint64_t stride) {
-    if (mode == "ATTRIBUTES" && stride % 4 != 0) return "needs a byteStride that is a multiple of 4";
+std::string wrongMeshopt(const std::string& mode, const std::string& filter, uint64_t count,
+                         uint64_t stride) {
+    if (mode == "ATTRIBUTES" && stride % 4 != 0)
+        return "needs a byteStride that is a multiple of 4";
     if (mode != "ATTRIBUTES" && stride != 2 && stride != 4) return "needs a byteStride of 2 or 4";
     if (mode == "TRIANGLES" && count % 3 != 0) return "needs a count that is a multiple of 3";
-    if (mode != "ATTRIBUTES" && filter != "NONE") return "has a filter, which only ATTRIBUTES may have";
-    if (filter == "OCTAHEDRAL" && stride != 4 && stride != 8) return "needs a byteStride of 4 or 8 for the filter OCTAHEDRAL";
-    if (filter == "QUATERNION" && stride != 8) return "needs a byteStride of 8 for the filter QUATERNION";
+    if (mode != "ATTRIBUTES" && filter != "NONE")
+        return "has a filter, which only ATTRIBUTES may have";
+    if (filter == "OCTAHEDRAL" && stride != 4 && stride != 8)
+        return "needs a byteStride of 4 or 8 for the filter OCTAHEDRAL";
+    if (filter == "QUATERNION" && stride != 8)
+        return "needs a byteStride of 8 for the filter QUATERNION";
     return {};
 }
 
@@ -112,41 +122,57 @@ int componentCount(std::string_view type) {
     return 0;
 }
 
-size_t GltfFile::accessorCount(size_t accessor) const { return array("accessors")[accessor].at("count").get<size_t>(); }
+size_t GltfFile::accessorCount(size_t accessor) const {
+    return array("accessors")[accessor].at("count").get<size_t>();
+}
 
 Result<std::span<const uint8_t>> GltfFile::viewBytes(size_t view) {
     const Json& json = array("bufferViews")[view];
     const std::string pointer = fmt::format("/bufferViews/{}", view);
-    if (const auto extensions = json.find("extensions"); extensions != json.end() && extensions->contains("EXT_meshopt_compression")) {
+    if (const auto extensions = json.find("extensions");
+        extensions != json.end() && extensions->contains("EXT_meshopt_compression")) {
         if (!unpacked_.contains(view))
             if (auto unpacked = unpackMeshopt(view); !unpacked) return unpacked.error();
         return std::span<const uint8_t>(unpacked_.at(view));
     }
     const SharedBytes& buffer = buffers_[json.at("buffer").get<size_t>()];
-    const uint64_t offset = numberOr(json, "byteOffset", 0), length = json.at("byteLength").get<uint64_t>();
+    const uint64_t offset = numberOr(json, "byteOffset", 0),
+                   length = json.at("byteLength").get<uint64_t>();
     if (!inside(offset, length, buffer->size()))
-        return at(pointer, fmt::format("spans bytes {} to {} of a buffer of {}", offset, offset + length, buffer->size()));
-    return std::span<const uint8_t>(reinterpret_cast<const uint8_t*>(buffer->data()) + offset, length);
+        return at(pointer, fmt::format("spans bytes {} to {} of a buffer of {}", offset,
+                                       offset + length, buffer->size()));
+    return std::span<const uint8_t>(reinterpret_cast<const uint8_t*>(buffer->data()) + offset,
+                                    length);
 }
 
 Result<void> GltfFile::unpackMeshopt(size_t view) {
     const Json& json = array("bufferViews")[view].at("extensions").at("EXT_meshopt_compression");
-    const std::string pointer = fmt::format("/bufferViews/{}/extensions/EXT_meshopt_compression", view);
+    const std::string pointer =
+        fmt::format("/bufferViews/{}/extensions/EXT_meshopt_compression", view);
     const SharedBytes& buffer = buffers_[json.at("buffer").get<size_t>()];
-    const uint64_t offset = numberOr(json, "byteOffset", 0), length = json.at("byteLength").get<uint64_t>();
-    const uint64_t count = json.at("count").get<uint64_t>(), stride = json.at("byteStride").get<uint64_t>();
-    const std::string mode = json.at("mode").get<std::string>(), filter = json.value("filter", std::string("NONE"));
+    const uint64_t offset = numberOr(json, "byteOffset", 0),
+                   length = json.at("byteLength").get<uint64_t>();
+    const uint64_t count = json.at("count").get<uint64_t>(),
+                   stride = json.at("byteStride").get<uint64_t>();
+    const std::string mode = json.at("mode").get<std::string>(),
+                      filter = json.value("filter", std::string("NONE"));
     if (!inside(offset, length, buffer->size()))
-        return at(pointer, fmt::format("spans bytes {} to {} of a buffer of {}", offset, offset + length, buffer->size()));
-    if (const std::string wrong = wrongMeshopt(mode, filter, count, stride); !wrong.empty()) return at(pointer, wrong);
-    if (count * stride > kMaxUnpackedBytes) return at(pointer, fmt::format("unpacks to {} bytes, more than is read", count * stride));
+        return at(pointer, fmt::format("spans bytes {} to {} of a buffer of {}", offset,
+                                       offset + length, buffer->size()));
+    if (const std::string wrong = wrongMeshopt(mode, filter, count, stride); !wrong.empty())
+        return at(pointer, wrong);
+    if (count * stride > kMaxUnpackedBytes)
+        return at(pointer, fmt::format("unpacks to {} bytes, more than is read", count * stride));
     if (auto fits = charge(count * stride / 4, pointer); !fits) return fits;
     std::vector<uint8_t> bytes(count * stride);
     const auto* packed = reinterpret_cast<const unsigned char*>(buffer->data()) + offset;
     int failed = 0;
-    if (mode == "ATTRIBUTES") failed = meshopt_decodeVertexBuffer(bytes.data(), count, stride, packed, length);
-    else if (mode == "TRIANGLES") failed = meshopt_decodeIndexBuffer(bytes.data(), count, stride, packed, length);
-    else failed = meshopt_decodeIndexSequence(bytes.data(), count, stride, packed, length);
+    if (mode == "ATTRIBUTES")
+        failed = meshopt_decodeVertexBuffer(bytes.data(), count, stride, packed, length);
+    else if (mode == "TRIANGLES")
+        failed = meshopt_decodeIndexBuffer(bytes.data(), count, stride, packed, length);
+    else
+        failed = meshopt_decodeIndexSequence(bytes.data(), count, stride, packed, length);
     if (failed != 0) return at(pointer, "holds data that is damaged");
     if (filter == "OCTAHEDRAL") meshopt_decodeFilterOct(bytes.data(), count, stride);
     if (filter == "QUATERNION") meshopt_decodeFilterQuat(bytes.data(), count, stride);
@@ -161,22 +187,32 @@ Result<std::string> GltfFile::elementBytes(size_t index) {
     const std::string pointer = fmt::format("/accessors/{}", index);
     const size_t size = layoutOf(accessor).bytes();
     const uint64_t count = accessor.at("count").get<uint64_t>();
-    if (auto fits = charge(count * size_t(componentCount(accessor.at("type").get<std::string>())), pointer); !fits) return fits.error();
+    if (auto fits =
+            charge(count * size_t(componentCount(accessor.at("type").get<std::string>())), pointer);
+        !fits)
+        return fits.error();
     std::string elements(count * size, '\0');
     if (const auto view = accessor.find("bufferView"); view != accessor.end()) {
         const auto bytes = viewBytes(view->get<size_t>());
         if (!bytes) return bytes.error();
         const Json& viewJson = array("bufferViews")[view->get<size_t>()];
         uint64_t stride = numberOr(viewJson, "byteStride", 0);
-        if (const auto extensions = viewJson.find("extensions"); extensions != viewJson.end() && extensions->contains("EXT_meshopt_compression"))
+        if (const auto extensions = viewJson.find("extensions");
+            extensions != viewJson.end() && extensions->contains("EXT_meshopt_compression"))
             stride = extensions->at("EXT_meshopt_compression").at("byteStride").get<uint64_t>();
         if (stride == 0) stride = size;
         const uint64_t offset = numberOr(accessor, "byteOffset", 0);
-        if (stride < size) return at(pointer, fmt::format("has elements of {} bytes, but its buffer view a stride of {}", size, stride));
+        if (stride < size)
+            return at(pointer,
+                      fmt::format("has elements of {} bytes, but its buffer view a stride of {}",
+                                  size, stride));
         // count < 2³² and stride ≤ 256: no overflow.
         if (count > 0 && !inside(offset, (count - 1) * stride + size, bytes->size()))
-            return at(pointer, fmt::format("needs {} bytes from byte {} on, but its buffer view has {}", (count - 1) * stride + size, offset, bytes->size()));
-        for (uint64_t i = 0; i < count; ++i) std::memcpy(elements.data() + i * size, bytes->data() + offset + i * stride, size);
+            return at(pointer,
+                      fmt::format("needs {} bytes from byte {} on, but its buffer view has {}",
+                                  (count - 1) * stride + size, offset, bytes->size()));
+        for (uint64_t i = 0; i < count; ++i)
+            std::memcpy(elements.data() + i * size, bytes->data() + offset + i * stride, size);
     }
     if (auto sparse = applySparse(index, elements); !sparse) return sparse.error();
     return elements;
@@ -187,7 +223,8 @@ Result<void> GltfFile::applySparse(size_t index, std::string& elements) {
     const auto sparse = accessor.find("sparse");
     if (sparse == accessor.end()) return {};
     const std::string pointer = fmt::format("/accessors/{}/sparse", index);
-    const uint64_t count = sparse->at("count").get<uint64_t>(), total = accessor.at("count").get<uint64_t>();
+    const uint64_t count = sparse->at("count").get<uint64_t>(),
+                   total = accessor.at("count").get<uint64_t>();
     const size_t size = layoutOf(accessor).bytes();
     const Json &indexJson = sparse->at("indices"), &valueJson = sparse->at("values");
     const int indexType = indexJson.at("componentType").get<int>();
@@ -196,14 +233,20 @@ Result<void> GltfFile::applySparse(size_t index, std::string& elements) {
     if (!indexBytes) return indexBytes.error();
     const auto valueBytes = viewBytes(valueJson.at("bufferView").get<size_t>());
     if (!valueBytes) return valueBytes.error();
-    const uint64_t indexOffset = numberOr(indexJson, "byteOffset", 0), valueOffset = numberOr(valueJson, "byteOffset", 0);
+    const uint64_t indexOffset = numberOr(indexJson, "byteOffset", 0),
+                   valueOffset = numberOr(valueJson, "byteOffset", 0);
     const size_t indexSize = componentBytes(indexType);
-    if (!inside(indexOffset, count * indexSize, indexBytes->size()) || !inside(valueOffset, count * size, valueBytes->size()))
+    if (!inside(indexOffset, count * indexSize, indexBytes->size()) ||
+        !inside(valueOffset, count * size, valueBytes->size()))
         return at(pointer, "reaches beyond its buffer views");
     for (uint64_t i = 0; i < count; ++i) {
-        const uint32_t target = unsignedComponent(reinterpret_cast<const char*>(indexBytes->data()) + indexOffset + i * indexSize, indexType);
-        if (target >= total) return at(pointer, fmt::format("replaces element {} of {}", target, total));
-        std::memcpy(elements.data() + target * size, valueBytes->data() + valueOffset + i * size, size);
+        const uint32_t target = unsignedComponent(
+            reinterpret_cast<const char*>(indexBytes->data()) + indexOffset + i * indexSize,
+            indexType);
+        if (target >= total)
+            return at(pointer, fmt::format("replaces element {} of {}", target, total));
+        std::memcpy(elements.data() + target * size, valueBytes->data() + valueOffset + i * size,
+                    size);
     }
     return {};
 }
@@ -213,7 +256,8 @@ Result<SharedFloats> GltfFile::floats(size_t index, std::string_view types) {
     const std::string type = accessor.at("type").get<std::string>();
     const int componentType = accessor.at("componentType").get<int>();
     const std::string pointer = fmt::format("/accessors/{}", index);
-    if (!listed(types, type)) return at(pointer + "/type", fmt::format("is {} but {} is wanted here", type, types));
+    if (!listed(types, type))
+        return at(pointer + "/type", fmt::format("is {} but {} is wanted here", type, types));
     if (const auto found = decoded_.find(index); found != decoded_.end()) return found->second;
     const auto elements = elementBytes(index);
     if (!elements) return elements.error();
@@ -227,14 +271,19 @@ Result<SharedFloats> GltfFile::floats(size_t index, std::string_view types) {
     for (size_t i = 0; i < count; ++i)
         for (size_t c = 0; c < layout.columns; ++c)
             for (size_t r = 0; r < layout.rows; ++r) {
-                float value = component(elements->data() + i * layout.bytes() + c * layout.columnBytes() + r * layout.componentSize, componentType, normalized);
-                if (!(std::abs(value) <= 1e18f)) { // squares of what is kept stay finite in single precision
+                float value = component(elements->data() + i * layout.bytes() +
+                                            c * layout.columnBytes() + r * layout.componentSize,
+                                        componentType, normalized);
+                if (!(std::abs(value) <=
+                      1e18f)) { // squares of what is kept stay finite in single precision
                     value = 0;
                     ++repaired;
                 }
                 data->values.push_back(value);
             }
-    if (repaired > 0) note(fmt::format("{} has {} values that are not finite or beyond 1e18; they are read as 0", pointer, repaired));
+    if (repaired > 0)
+        note(fmt::format("{} has {} values that are not finite or beyond 1e18; they are read as 0",
+                         pointer, repaired));
     decoded_[index] = data;
     return SharedFloats(data);
 }
@@ -243,14 +292,17 @@ Result<std::vector<uint32_t>> GltfFile::indices(size_t index) {
     const Json& accessor = array("accessors")[index];
     const std::string pointer = fmt::format("/accessors/{}", index);
     const int type = accessor.at("componentType").get<int>();
-    if (accessor.at("type").get<std::string>() != "SCALAR") return at(pointer + "/type", "must be SCALAR for indices");
+    if (accessor.at("type").get<std::string>() != "SCALAR")
+        return at(pointer + "/type", "must be SCALAR for indices");
     if (type != kUnsignedByte && type != kUnsignedShort && type != kUnsignedInt)
-        return at(pointer + "/componentType", fmt::format("is {} but indices must be 5121, 5123 or 5125", type));
+        return at(pointer + "/componentType",
+                  fmt::format("is {} but indices must be 5121, 5123 or 5125", type));
     const auto elements = elementBytes(index);
     if (!elements) return elements.error();
     const size_t size = componentBytes(type);
     std::vector<uint32_t> values(elements->size() / size);
-    for (size_t i = 0; i < values.size(); ++i) values[i] = unsignedComponent(elements->data() + i * size, type);
+    for (size_t i = 0; i < values.size(); ++i)
+        values[i] = unsignedComponent(elements->data() + i * size, type);
     return values;
 }
 

@@ -25,7 +25,8 @@ float scaleOf(const Json& accessor, const draco::PointAttribute& attribute) {
     }
 }
 
-SharedFloats readAttribute(const draco::Mesh& mesh, const draco::PointAttribute& attribute, const Json& accessor) {
+SharedFloats readAttribute(const draco::Mesh& mesh, const draco::PointAttribute& attribute,
+                           const Json& accessor) {
     auto data = std::make_shared<FloatData>();
     data->components = componentCount(accessor.at("type").get<std::string>());
     data->values.resize(size_t(mesh.num_points()) * size_t(data->components));
@@ -33,10 +34,12 @@ SharedFloats readAttribute(const draco::Mesh& mesh, const draco::PointAttribute&
     for (uint32_t i = 0; i < mesh.num_points(); ++i) {
         float values[16] = {};
         const draco::AttributeValueIndex place = attribute.mapped_index(draco::PointIndex(i));
-        if (place.value() < attribute.size()) attribute.ConvertValue<float>(place, int8_t(data->components), values);
+        if (place.value() < attribute.size())
+            attribute.ConvertValue<float>(place, int8_t(data->components), values);
         for (int c = 0; c < data->components; ++c) {
             const float value = values[c] * scale;
-            data->values[size_t(i) * size_t(data->components) + size_t(c)] = std::abs(value) <= 1e18f ? value : 0;
+            data->values[size_t(i) * size_t(data->components) + size_t(c)] =
+                std::abs(value) <= 1e18f ? value : 0;
         }
     }
     return data;
@@ -57,10 +60,14 @@ bool readVarint(std::span<const uint8_t> bytes, size_t& offset, uint64_t& value)
 /// they are judged here first. Empty, or what is wrong.
 std::string wrongHeader(std::span<const uint8_t> bytes) {
     constexpr size_t kHeader = 11; // "DRACO", version, encoder type, method, flags
-    constexpr uint64_t kSmall = uint64_t(1) << 16, kElementsPerByte = 128, kMost = uint64_t(1) << 25;
-    if (bytes.size() < kHeader || std::memcmp(bytes.data(), "DRACO", 5) != 0) return "holds data that is not Draco's";
+    constexpr uint64_t kSmall = uint64_t(1) << 16, kElementsPerByte = 128,
+                       kMost = uint64_t(1) << 25;
+    if (bytes.size() < kHeader || std::memcmp(bytes.data(), "DRACO", 5) != 0)
+        return "holds data that is not Draco's";
     const int version = bytes[5] * 256 + bytes[6];
-    if (version < 0x0202) return fmt::format("holds data of Draco version {}.{}, but 2.2 is the first that glTF has", bytes[5], bytes[6]);
+    if (version < 0x0202)
+        return fmt::format("holds data of Draco version {}.{}, but 2.2 is the first that glTF has",
+                           bytes[5], bytes[6]);
     if (bytes[7] != 1) return "holds Draco data that is not a mesh";
     if (bytes[10] & 0x80) return "holds Draco data with metadata, which glTF does not use";
     size_t offset = kHeader;
@@ -69,14 +76,16 @@ std::string wrongHeader(std::span<const uint8_t> bytes) {
         uint64_t count = 0;
         if (!readVarint(bytes, offset, count)) return "holds Draco data that is cut short";
         if (count > std::min(kMost, std::max(kSmall, kElementsPerByte * bytes.size())))
-            return fmt::format("claims {} elements in {} bytes of Draco data, which cannot be", count, bytes.size());
+            return fmt::format("claims {} elements in {} bytes of Draco data, which cannot be",
+                               count, bytes.size());
     }
     return {};
 }
 
 } // namespace
 
-Result<void> decodeDraco(GltfFile& file, const Json& primitive, const std::string& pointer, PrimitiveSource& source) {
+Result<void> decodeDraco(GltfFile& file, const Json& primitive, const std::string& pointer,
+                         PrimitiveSource& source) {
     const Json& extension = primitive.at("extensions").at("KHR_draco_mesh_compression");
     const std::string here = pointer + "/extensions/KHR_draco_mesh_compression";
     const auto bytes = file.viewBytes(extension.at("bufferView").get<size_t>());
@@ -86,33 +95,49 @@ Result<void> decodeDraco(GltfFile& file, const Json& primitive, const std::strin
     buffer.Init(reinterpret_cast<const char*>(bytes->data()), bytes->size());
     draco::Decoder decoder;
     auto decoded = decoder.DecodeMeshFromBuffer(&buffer);
-    if (!decoded.ok()) return file.at(here, fmt::format("holds data that Draco cannot decode: {}", decoded.status().error_msg_string()));
+    if (!decoded.ok())
+        return file.at(here, fmt::format("holds data that Draco cannot decode: {}",
+                                         decoded.status().error_msg_string()));
     const std::unique_ptr<draco::Mesh> mesh = std::move(decoded).value();
-    if (auto fits = file.charge(size_t(mesh->num_points()) + 3 * size_t(mesh->num_faces()), here); !fits) return fits;
+    if (auto fits = file.charge(size_t(mesh->num_points()) + 3 * size_t(mesh->num_faces()), here);
+        !fits)
+        return fits;
 
     source.indexed = true;
     source.indices.reserve(3 * size_t(mesh->num_faces()));
     for (uint32_t f = 0; f < mesh->num_faces(); ++f)
-        for (const draco::PointIndex& point : mesh->face(draco::FaceIndex(f))) source.indices.push_back(point.value());
+        for (const draco::PointIndex& point : mesh->face(draco::FaceIndex(f)))
+            source.indices.push_back(point.value());
 
     const Json& accessors = file.array("accessors");
     for (const auto& [name, id] : extension.at("attributes").items()) {
         const draco::PointAttribute* attribute = mesh->GetAttributeByUniqueId(id.get<uint32_t>());
         const auto accessor = primitive.at("attributes").find(name);
         if (!attribute || accessor == primitive.at("attributes").end())
-            return file.at(here + "/attributes/" + name, "names an attribute that is not in the compressed data or not in the primitive");
+            return file.at(
+                here + "/attributes/" + name,
+                "names an attribute that is not in the compressed data or not in the primitive");
         const Json& described = accessors[accessor->get<size_t>()];
         const int components = componentCount(described.at("type").get<std::string>());
         if (components > 4 || components != int(attribute->num_components()))
-            return file.at(here + "/attributes/" + name, fmt::format("has {} components, but the accessor {}", int(attribute->num_components()), components));
-        if (auto fits = file.charge(size_t(mesh->num_points()) * size_t(components), here); !fits) return fits;
+            return file.at(here + "/attributes/" + name,
+                           fmt::format("has {} components, but the accessor {}",
+                                       int(attribute->num_components()), components));
+        if (auto fits = file.charge(size_t(mesh->num_points()) * size_t(components), here); !fits)
+            return fits;
         const SharedFloats data = readAttribute(*mesh, *attribute, described);
-        if (name == "POSITION") source.positions = data;
-        else if (name == "NORMAL") source.normals = data;
-        else if (name == "TANGENT") source.tangents = data;
-        else if (name == "COLOR_0") source.colors = data;
-        else if (name == "JOINTS_0") source.joints = data;
-        else if (name == "WEIGHTS_0") source.weights = data;
+        if (name == "POSITION")
+            source.positions = data;
+        else if (name == "NORMAL")
+            source.normals = data;
+        else if (name == "TANGENT")
+            source.tangents = data;
+        else if (name == "COLOR_0")
+            source.colors = data;
+        else if (name == "JOINTS_0")
+            source.joints = data;
+        else if (name == "WEIGHTS_0")
+            source.weights = data;
         else
             for (int set = 0; set < kMaxUvSets; ++set)
                 if (name == fmt::format("TEXCOORD_{}", set)) source.uvs[size_t(set)] = data;

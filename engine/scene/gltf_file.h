@@ -76,8 +76,8 @@ private:
     std::shared_ptr<Json> json_;
     SharedBytes binaryChunk_;
     std::vector<SharedBytes> buffers_;
-    std::map<std::string, SharedBytes> files_;         // by URI
-    std::map<size_t, std::vector<uint8_t>> unpacked_;  // EXT_meshopt_compression, by view
+    std::map<std::string, SharedBytes> files_;        // by URI
+    std::map<size_t, std::vector<uint8_t>> unpacked_; // EXT_meshopt_compression, by view
     std::map<size_t, SharedFloats> decoded_;
     size_t allowance_ = 0;
     uint64_t loadedBytes_ = 0;

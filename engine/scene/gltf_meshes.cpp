@@ -13,10 +13,20 @@
 namespace tyndall {
 namespace {
 
-enum Mode { Points = 0, Lines = 1, LineLoop = 2, LineStrip = 3, Triangles = 4, TriangleStrip = 5, TriangleFan = 6 };
+enum Mode {
+    Points = 0,
+    Lines = 1,
+    LineLoop = 2,
+    LineStrip = 3,
+    Triangles = 4,
+    TriangleStrip = 5,
+    TriangleFan = 6
+};
 
 MeshTopology topologyOf(int mode) {
-    return mode == Points ? MeshTopology::Points : mode < Triangles ? MeshTopology::Lines : MeshTopology::Triangles;
+    return mode == Points     ? MeshTopology::Points
+           : mode < Triangles ? MeshTopology::Lines
+                              : MeshTopology::Triangles;
 }
 
 /// Lists from any mode, as glTF 2.0 section 3.7.2.1 defines them; a rest that makes no whole line or triangle is dropped.
@@ -33,7 +43,8 @@ std::vector<uint32_t> makeList(int mode, std::vector<uint32_t> in) {
         if (mode == LineLoop && n > 1) out.insert(out.end(), {in[n - 1], in[0]});
         return out;
     case TriangleStrip:
-        for (size_t i = 0; i + 2 < n; ++i) out.insert(out.end(), {in[i], in[i + 1 + i % 2], in[i + 2 - i % 2]});
+        for (size_t i = 0; i + 2 < n; ++i)
+            out.insert(out.end(), {in[i], in[i + 1 + i % 2], in[i + 2 - i % 2]});
         return out;
     default:
         for (size_t i = 0; i + 2 < n; ++i) out.insert(out.end(), {in[i + 1], in[i + 2], in[0]});
@@ -44,7 +55,9 @@ std::vector<uint32_t> makeList(int mode, std::vector<uint32_t> in) {
 /// Renumbers indices to the vertices that are used, in order of first use; returns those.
 std::vector<uint32_t> compact(std::vector<uint32_t>& indices, size_t vertexCount) {
     std::vector<uint32_t> from;
-    if (indices.size() < vertexCount / 8) { // few of many: a table over all vertices would cost more than the primitive
+    if (indices.size() <
+        vertexCount /
+            8) { // few of many: a table over all vertices would cost more than the primitive
         std::unordered_map<uint32_t, uint32_t> to;
         for (uint32_t& index : indices) {
             const auto [place, fresh] = to.emplace(index, uint32_t(from.size()));
@@ -72,7 +85,8 @@ std::vector<V> gather(const SharedFloats& data, const std::vector<uint32_t>& fro
     values.reserve(from.size());
     for (const uint32_t index : from) {
         V value(fill);
-        for (int c = 0; c < std::min<int>(data->components, V::length()); ++c) value[c] = data->at(index)[c];
+        for (int c = 0; c < std::min<int>(data->components, V::length()); ++c)
+            value[c] = data->at(index)[c];
         values.push_back(value);
     }
     return values;
@@ -90,12 +104,16 @@ void normalizeTangents(Mesh& mesh) {
         vec4& tangent = mesh.tangents[i];
         const float length = glm::length(vec3(tangent)), sign = tangent.w < 0 ? -1.0f : 1.0f;
         const vec3 axis = std::abs(mesh.normals[i].x) < 0.9f ? vec3(1, 0, 0) : vec3(0, 1, 0);
-        tangent = vec4(length > 1e-20f && std::isfinite(length) ? vec3(tangent) / length : glm::normalize(glm::cross(mesh.normals[i], axis)), sign);
+        tangent = vec4(length > 1e-20f && std::isfinite(length)
+                           ? vec3(tangent) / length
+                           : glm::normalize(glm::cross(mesh.normals[i], axis)),
+                       sign);
     }
 }
 
 /// Linear blend skinning of the rest pose (glTF 2.0 section 3.7.3.3).
-void skin(Mesh& mesh, const std::vector<vec4>& joints, const std::vector<vec4>& weights, const std::vector<dmat4>& matrices) {
+void skin(Mesh& mesh, const std::vector<vec4>& joints, const std::vector<vec4>& weights,
+          const std::vector<dmat4>& matrices) {
     for (size_t i = 0; i < mesh.positions.size(); ++i) {
         dmat4 blend(0.0);
         double total = 0;
@@ -111,9 +129,14 @@ void skin(Mesh& mesh, const std::vector<vec4>& joints, const std::vector<vec4>& 
         mesh.positions[i] = vec3(blend * dvec4(dvec3(mesh.positions[i]), 1));
         const dmat3 linear(blend);
         // The cofactor matrix is the inverse transpose without the division, so that it exists for a flattened pose.
-        const dmat3 cofactor(glm::cross(linear[1], linear[2]), glm::cross(linear[2], linear[0]), glm::cross(linear[0], linear[1]));
-        if (!mesh.normals.empty()) mesh.normals[i] = vec3(glm::normalize(cofactor * dvec3(mesh.normals[i]) + dvec3(1e-300)));
-        if (!mesh.tangents.empty()) mesh.tangents[i] = vec4(vec3(linear * dvec3(vec3(mesh.tangents[i]))), mesh.tangents[i].w);
+        const dmat3 cofactor(glm::cross(linear[1], linear[2]), glm::cross(linear[2], linear[0]),
+                             glm::cross(linear[0], linear[1]));
+        if (!mesh.normals.empty())
+            mesh.normals[i] =
+                vec3(glm::normalize(cofactor * dvec3(mesh.normals[i]) + dvec3(1e-300)));
+        if (!mesh.tangents.empty())
+            mesh.tangents[i] =
+                vec4(vec3(linear * dvec3(vec3(mesh.tangents[i]))), mesh.tangents[i].w);
     }
 }
 
@@ -125,12 +148,16 @@ Result<std::vector<int>> GltfModel::readMesh(size_t index, const Shape& shape) {
     std::vector<int> meshes;
     for (size_t i = 0; i < primitives.size(); ++i) {
         const std::string pointer = fmt::format("/meshes/{}/primitives/{}", index, i);
-        if (auto read = readPrimitive(primitives[i], pointer, json.value("name", std::string()), shape, meshes); !read) return read.error();
+        if (auto read = readPrimitive(primitives[i], pointer, json.value("name", std::string()),
+                                      shape, meshes);
+            !read)
+            return read.error();
     }
     return meshes;
 }
 
-Result<void> GltfModel::readPrimitive(const Json& json, const std::string& pointer, const std::string& name, const Shape& shape,
+Result<void> GltfModel::readPrimitive(const Json& json, const std::string& pointer,
+                                      const std::string& name, const Shape& shape,
                                       std::vector<int>& meshes) {
     if (!json.at("attributes").contains("POSITION")) {
         file_.note(pointer + " has no positions and is left out");
@@ -138,14 +165,16 @@ Result<void> GltfModel::readPrimitive(const Json& json, const std::string& point
     }
     auto source = readSource(json, pointer);
     if (!source) return source.error();
-    if (auto morphed = addMorphTargets(json, pointer, shape.weights, *source); !morphed) return morphed;
+    if (auto morphed = addMorphTargets(json, pointer, shape.weights, *source); !morphed)
+        return morphed;
     const SharedFloats joints = source->joints, weights = source->weights;
     std::vector<uint32_t> from;
     auto mesh = cutToIndices(json, pointer, *source);
     if (!mesh) return mesh.error();
     if (mesh->positions.empty()) return {}; // nothing to draw
     mesh->name = name;
-    if (const auto material = json.find("material"); material != json.end()) mesh->material = material->get<int>();
+    if (const auto material = json.find("material"); material != json.end())
+        mesh->material = material->get<int>();
     if (shape.joints && joints && weights) {
         // The attributes were cut to the used vertices in the same order as here.
         std::vector<uint32_t> indices = makeList(json.value("mode", 4), source->indices);
@@ -162,9 +191,11 @@ Result<PrimitiveSource> GltfModel::readSource(const Json& json, const std::strin
     PrimitiveSource source;
     const auto extensions = json.find("extensions");
     if (extensions != json.end() && extensions->contains("KHR_draco_mesh_compression"))
-        if (auto decoded = decodeDraco(file_, json, pointer, source); !decoded) return decoded.error();
+        if (auto decoded = decodeDraco(file_, json, pointer, source); !decoded)
+            return decoded.error();
     const Json& attributes = json.at("attributes");
-    const auto read = [&](const std::string& name, std::string_view types, SharedFloats& to) -> Result<void> {
+    const auto read = [&](const std::string& name, std::string_view types,
+                          SharedFloats& to) -> Result<void> {
         const auto accessor = attributes.find(name);
         if (to || accessor == attributes.end()) return {};
         auto values = file_.floats(accessor->get<size_t>(), types);
@@ -177,15 +208,20 @@ Result<PrimitiveSource> GltfModel::readSource(const Json& json, const std::strin
     if (auto done = read("TANGENT", "VEC4", source.tangents); !done) return done.error();
     if (auto done = read("COLOR_0", "VEC3 VEC4", source.colors); !done) return done.error();
     for (int set = 0; set < kMaxUvSets; ++set)
-        if (auto done = read(fmt::format("TEXCOORD_{}", set), "VEC2", source.uvs[size_t(set)]); !done) return done.error();
+        if (auto done = read(fmt::format("TEXCOORD_{}", set), "VEC2", source.uvs[size_t(set)]);
+            !done)
+            return done.error();
     if (auto done = read("JOINTS_0", "VEC4", source.joints); !done) return done.error();
     if (auto done = read("WEIGHTS_0", "VEC4", source.weights); !done) return done.error();
 
     const size_t count = source.vertexCount();
-    for (const SharedFloats& data : {source.normals, source.tangents, source.colors, source.uvs[0], source.uvs[1], source.uvs[2],
-                                     source.uvs[3], source.joints, source.weights})
+    for (const SharedFloats& data :
+         {source.normals, source.tangents, source.colors, source.uvs[0], source.uvs[1],
+          source.uvs[2], source.uvs[3], source.joints, source.weights})
         if (data && data->count() != count)
-            return file_.at(pointer, fmt::format("has {} positions, but {} elements of another attribute", count, data->count()));
+            return file_.at(pointer,
+                            fmt::format("has {} positions, but {} elements of another attribute",
+                                        count, data->count()));
     if (const auto indices = json.find("indices"); indices != json.end() && !source.indexed) {
         auto values = file_.indices(indices->get<size_t>());
         if (!values) return values.error();
@@ -198,15 +234,21 @@ Result<PrimitiveSource> GltfModel::readSource(const Json& json, const std::strin
         for (size_t i = 0; i < count; ++i) source.indices[i] = uint32_t(i);
     }
     for (const uint32_t index : source.indices)
-        if (index >= count) return file_.at(pointer + "/indices", fmt::format("holds {}, but there are {} vertices", index, count));
+        if (index >= count)
+            return file_.at(pointer + "/indices",
+                            fmt::format("holds {}, but there are {} vertices", index, count));
     return source;
 }
 
-Result<void> GltfModel::addMorphTargets(const Json& json, const std::string& pointer, const std::vector<double>& weights, PrimitiveSource& source) {
+Result<void> GltfModel::addMorphTargets(const Json& json, const std::string& pointer,
+                                        const std::vector<double>& weights,
+                                        PrimitiveSource& source) {
     const auto targets = json.find("targets");
     if (targets == json.end()) return {};
     file_.note("morph targets are shown as their default weights have them");
-    const std::pair<const char*, SharedFloats*> kinds[] = {{"POSITION", &source.positions}, {"NORMAL", &source.normals}, {"TANGENT", &source.tangents}};
+    const std::pair<const char*, SharedFloats*> kinds[] = {{"POSITION", &source.positions},
+                                                           {"NORMAL", &source.normals},
+                                                           {"TANGENT", &source.tangents}};
     for (const auto& [name, data] : kinds) {
         if (!*data) continue;
         std::shared_ptr<FloatData> moved;
@@ -216,60 +258,79 @@ Result<void> GltfModel::addMorphTargets(const Json& json, const std::string& poi
             const auto offsets = file_.floats(accessor->get<size_t>(), "VEC3");
             if (!offsets) return offsets.error();
             if ((*offsets)->count() != (*data)->count())
-                return file_.at(fmt::format("{}/targets/{}/{}", pointer, t, name), fmt::format("has {} elements, but the primitive {} vertices", (*offsets)->count(), (*data)->count()));
+                return file_.at(fmt::format("{}/targets/{}/{}", pointer, t, name),
+                                fmt::format("has {} elements, but the primitive {} vertices",
+                                            (*offsets)->count(), (*data)->count()));
             if (!moved) {
                 if (auto fits = file_.charge((*data)->values.size(), pointer); !fits) return fits;
                 moved = std::make_shared<FloatData>(**data);
             }
             for (size_t i = 0; i < moved->count(); ++i)
                 for (size_t c = 0; c < 3; ++c)
-                    moved->values[i * size_t(moved->components) + c] += float(weights[t]) * (*offsets)->at(i)[c];
+                    moved->values[i * size_t(moved->components) + c] +=
+                        float(weights[t]) * (*offsets)->at(i)[c];
         }
         if (moved) *data = moved;
     }
     return {};
 }
 
-Result<Mesh> GltfModel::cutToIndices(const Json& json, const std::string& pointer, const PrimitiveSource& source) {
+Result<Mesh> GltfModel::cutToIndices(const Json& json, const std::string& pointer,
+                                     const PrimitiveSource& source) {
     const int mode = json.value("mode", 4);
     Mesh mesh;
     mesh.topology = topologyOf(mode);
     // A strip makes up to three indices out of one; what they keep of the attributes is at most as much.
-    if (auto fits = file_.charge(source.indices.size() * (mode == LineStrip || mode == LineLoop || mode > Triangles ? 3 : 1), pointer); !fits)
+    if (auto fits =
+            file_.charge(source.indices.size() *
+                             (mode == LineStrip || mode == LineLoop || mode > Triangles ? 3 : 1),
+                         pointer);
+        !fits)
         return fits.error();
     mesh.indices = makeList(mode, source.indices);
-    if (mode == Triangles && source.indices.size() % 3 != 0) file_.note(pointer + " has indices that make no whole triangle; they are dropped");
+    if (mode == Triangles && source.indices.size() % 3 != 0)
+        file_.note(pointer + " has indices that make no whole triangle; they are dropped");
     const std::vector<uint32_t> from = compact(mesh.indices, source.vertexCount());
     mesh.positions = gather<vec3>(source.positions, from, 0);
     mesh.normals = gather<vec3>(source.normals, from, 0);
     mesh.tangents = gather<vec4>(source.tangents, from, 0);
     mesh.colors = gather<vec4>(source.colors, from, 1);
-    for (size_t set = 0; set < source.uvs.size(); ++set) mesh.uvs[set] = gather<vec2>(source.uvs[set], from, 0);
+    for (size_t set = 0; set < source.uvs.size(); ++set)
+        mesh.uvs[set] = gather<vec2>(source.uvs[set], from, 0);
     return mesh;
 }
 
 void GltfModel::finishMesh(Mesh& mesh, const std::string& pointer) {
-    for (vec3& position : mesh.positions) // morph targets and skins can leave the range that accessors keep to
-        if (!(std::abs(position.x) <= 1e18f && std::abs(position.y) <= 1e18f && std::abs(position.z) <= 1e18f)) {
+    for (vec3& position :
+         mesh.positions) // morph targets and skins can leave the range that accessors keep to
+        if (!(std::abs(position.x) <= 1e18f && std::abs(position.y) <= 1e18f &&
+              std::abs(position.z) <= 1e18f)) {
             position = vec3(0);
             file_.note(pointer + " has positions beyond 1e18 metres; they are moved to the origin");
         }
     const Material& material = scene_.materialOf(mesh);
-    for (const TextureRef* reference : {&material.baseColorTexture, &material.metallicRoughnessTexture, &material.normalTexture,
-                                        &material.occlusionTexture, &material.emissiveTexture}) {
+    for (const TextureRef* reference :
+         {&material.baseColorTexture, &material.metallicRoughnessTexture, &material.normalTexture,
+          &material.occlusionTexture, &material.emissiveTexture}) {
         auto& uvs = mesh.uvs[size_t(reference->uvSet)];
         if (reference->texture == kNone || !uvs.empty()) continue;
-        file_.note(fmt::format("{} lacks TEXCOORD_{}, which its material uses; (0, 0) is taken", pointer, reference->uvSet));
+        file_.note(fmt::format("{} lacks TEXCOORD_{}, which its material uses; (0, 0) is taken",
+                               pointer, reference->uvSet));
         uvs.assign(mesh.positions.size(), vec2(0));
     }
     for (vec4& color : mesh.colors) color = glm::clamp(color, vec4(0), vec4(1));
     if (mesh.topology == MeshTopology::Triangles) {
-        if (mesh.normals.empty()) makeFlatNormals(mesh);
-        else normalizeAll(mesh.normals);
+        if (mesh.normals.empty())
+            makeFlatNormals(mesh);
+        else
+            normalizeAll(mesh.normals);
         const bool wanted = material.normalTexture.texture != kNone;
-        if (!wanted) mesh.tangents.clear();
-        else if (mesh.tangents.empty()) makeTangents(mesh, material.normalTexture.uvSet);
-        else normalizeTangents(mesh);
+        if (!wanted)
+            mesh.tangents.clear();
+        else if (mesh.tangents.empty())
+            makeTangents(mesh, material.normalTexture.uvSet);
+        else
+            normalizeTangents(mesh);
     } else {
         normalizeAll(mesh.normals);
         mesh.tangents.clear();

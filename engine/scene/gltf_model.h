@@ -14,17 +14,20 @@ namespace tyndall {
 struct PrimitiveSource {
     SharedFloats positions, normals, tangents, colors;
     std::array<SharedFloats, kMaxUvSets> uvs;
-    SharedFloats joints, weights;      // JOINTS_0, WEIGHTS_0
-    std::vector<uint32_t> indices;     // as in the file, before lists are made; empty: all vertices in order
+    SharedFloats joints, weights; // JOINTS_0, WEIGHTS_0
+    std::vector<uint32_t>
+        indices; // as in the file, before lists are made; empty: all vertices in order
     bool indexed = false;
     [[nodiscard]] size_t vertexCount() const { return positions ? positions->count() : 0; }
 };
 
 /// Fills everything that a KHR_draco_mesh_compression bit stream holds; attributes that it does not hold stay null.
-Result<void> decodeDraco(GltfFile& file, const Json& extension, const std::string& pointer, PrimitiveSource& source);
+Result<void> decodeDraco(GltfFile& file, const Json& extension, const std::string& pointer,
+                         PrimitiveSource& source);
 
 /// Joint matrices (root from mesh) of a skin in its rest pose.
-Result<std::vector<dmat4>> skinMatrices(GltfFile& file, size_t skin, const std::vector<dmat4>& rootFromNode);
+Result<std::vector<dmat4>> skinMatrices(GltfFile& file, size_t skin,
+                                        const std::vector<dmat4>& rootFromNode);
 
 class GltfModel {
 public:
@@ -44,10 +47,14 @@ private:
         const std::vector<dmat4>* joints = nullptr;
     };
     Result<std::vector<int>> readMesh(size_t mesh, const Shape& shape);
-    Result<void> readPrimitive(const Json& json, const std::string& pointer, const std::string& name, const Shape& shape, std::vector<int>& meshes);
+    Result<void> readPrimitive(const Json& json, const std::string& pointer,
+                               const std::string& name, const Shape& shape,
+                               std::vector<int>& meshes);
     Result<PrimitiveSource> readSource(const Json& json, const std::string& pointer);
-    Result<void> addMorphTargets(const Json& json, const std::string& pointer, const std::vector<double>& weights, PrimitiveSource& source);
-    Result<Mesh> cutToIndices(const Json& json, const std::string& pointer, const PrimitiveSource& source);
+    Result<void> addMorphTargets(const Json& json, const std::string& pointer,
+                                 const std::vector<double>& weights, PrimitiveSource& source);
+    Result<Mesh> cutToIndices(const Json& json, const std::string& pointer,
+                              const PrimitiveSource& source);
     void finishMesh(Mesh& mesh, const std::string& pointer);
 
     // Nodes (gltf_nodes.cpp).
@@ -65,7 +72,7 @@ private:
     GltfFile& file_;
     Scene& scene_;
     std::map<size_t, int> textures_, images_, cameras_, lights_; // by index in the file
-    std::map<size_t, std::vector<int>> meshes_;                  // those without a skin or weights of a node's own
+    std::map<size_t, std::vector<int>> meshes_; // those without a skin or weights of a node's own
     struct Placed {
         size_t node;
         int parent; // in the scene

@@ -13,9 +13,10 @@ namespace tyndall {
 namespace {
 
 constexpr std::array<std::string_view, 10> kUnderstood = {
-    "KHR_materials_unlit",     "KHR_materials_emissive_strength", "KHR_materials_specular",      "KHR_texture_transform",
-    "KHR_mesh_quantization",   "KHR_lights_punctual",             "EXT_mesh_gpu_instancing",     "KHR_draco_mesh_compression",
-    "EXT_meshopt_compression", "EXT_texture_webp",
+    "KHR_materials_unlit",     "KHR_materials_emissive_strength", "KHR_materials_specular",
+    "KHR_texture_transform",   "KHR_mesh_quantization",           "KHR_lights_punctual",
+    "EXT_mesh_gpu_instancing", "KHR_draco_mesh_compression",      "EXT_meshopt_compression",
+    "EXT_texture_webp",
 };
 
 // In the subset of JSON Schema of json_schema.h. Only what is read; other keys may hold anything.
@@ -181,21 +182,27 @@ size_t sizeOf(const Json& gltf, std::string_view target) {
 }
 
 /// Follows `place` and judges every index that it leads to.
-Result<void> checkReference(const Json& here, std::string_view place, const std::string& pointer, size_t size, std::string_view target) {
+Result<void> checkReference(const Json& here, std::string_view place, const std::string& pointer,
+                            size_t size, std::string_view target) {
     if (place.empty()) {
         if (here.get<uint64_t>() < size) return {};
-        return Error{fmt::format("{} is {}, but '{}' has {} elements", pointer, here.dump(), target, size)};
+        return Error{
+            fmt::format("{} is {}, but '{}' has {} elements", pointer, here.dump(), target, size)};
     }
     const size_t slash = place.find('/');
     const std::string step(place.substr(0, slash));
-    const std::string_view rest = slash == std::string_view::npos ? std::string_view() : place.substr(slash + 1);
+    const std::string_view rest =
+        slash == std::string_view::npos ? std::string_view() : place.substr(slash + 1);
     if (step == "*") {
         for (const auto& [key, member] : here.items())
-            if (auto inside = checkReference(member, rest, pointer + "/" + key, size, target); !inside) return inside;
+            if (auto inside = checkReference(member, rest, pointer + "/" + key, size, target);
+                !inside)
+                return inside;
         return {};
     }
     const auto found = here.find(step);
-    return found == here.end() ? Result<void>() : checkReference(*found, rest, pointer + "/" + step, size, target);
+    return found == here.end() ? Result<void>()
+                               : checkReference(*found, rest, pointer + "/" + step, size, target);
 }
 
 } // namespace
@@ -204,23 +211,33 @@ Result<void> checkGltfRules(const Json& gltf) {
     static const Json rules = Json::parse(kRules);
     if (auto valid = validateJson(gltf, rules); !valid) return valid;
     for (const Reference& reference : kReferences)
-        if (auto valid = checkReference(gltf, reference.place, "", sizeOf(gltf, reference.target), reference.target); !valid) return valid;
+        if (auto valid = checkReference(gltf, reference.place, "", sizeOf(gltf, reference.target),
+                                        reference.target);
+            !valid)
+            return valid;
     const Json& asset = gltf.at("asset");
-    if (const std::string version = asset.at("version").get<std::string>(); !version.starts_with("2."))
-        return Error{fmt::format("/asset/version is '{}', but only glTF 2.x is read", version.substr(0, 40))};
+    if (const std::string version = asset.at("version").get<std::string>();
+        !version.starts_with("2."))
+        return Error{fmt::format("/asset/version is '{}', but only glTF 2.x is read",
+                                 version.substr(0, 40))};
     if (const std::string version = asset.value("minVersion", std::string("2.0")); version != "2.0")
-        return Error{fmt::format("/asset/minVersion is '{}', but only glTF 2.0 is understood", version.substr(0, 40))};
+        return Error{fmt::format("/asset/minVersion is '{}', but only glTF 2.0 is understood",
+                                 version.substr(0, 40))};
     return {};
 }
 
 Result<void> checkGltfExtensions(const Json& gltf, std::vector<std::string>& notes) {
-    const auto understood = [](const std::string& name) { return std::find(kUnderstood.begin(), kUnderstood.end(), name) != kUnderstood.end(); };
+    const auto understood = [](const std::string& name) {
+        return std::find(kUnderstood.begin(), kUnderstood.end(), name) != kUnderstood.end();
+    };
     for (const Json& name : gltf.value("extensionsRequired", Json::array()))
         if (!understood(name.get<std::string>()))
-            return Error{fmt::format("/extensionsRequired names '{}', which is not supported", name.get<std::string>().substr(0, 80))};
+            return Error{fmt::format("/extensionsRequired names '{}', which is not supported",
+                                     name.get<std::string>().substr(0, 80))};
     for (const Json& name : gltf.value("extensionsUsed", Json::array()))
         if (!understood(name.get<std::string>()))
-            notes.push_back(fmt::format("the extension {} is not supported and ignored", name.get<std::string>().substr(0, 80)));
+            notes.push_back(fmt::format("the extension {} is not supported and ignored",
+                                        name.get<std::string>().substr(0, 80)));
     return {};
 }
 

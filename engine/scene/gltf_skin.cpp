@@ -5,7 +5,8 @@
 
 namespace tyndall {
 
-Result<std::vector<dmat4>> skinMatrices(GltfFile& file, size_t skin, const std::vector<dmat4>& rootFromNode) {
+Result<std::vector<dmat4>> skinMatrices(GltfFile& file, size_t skin,
+                                        const std::vector<dmat4>& rootFromNode) {
     const Json& json = file.array("skins")[skin];
     const Json& joints = json.at("joints");
     SharedFloats inverseBind;
@@ -14,7 +15,9 @@ Result<std::vector<dmat4>> skinMatrices(GltfFile& file, size_t skin, const std::
         if (!values) return values.error();
         inverseBind = *values;
         if (inverseBind->count() < joints.size())
-            return file.at(fmt::format("/skins/{}/inverseBindMatrices", skin), fmt::format("has {} matrices for {} joints", inverseBind->count(), joints.size()));
+            return file.at(
+                fmt::format("/skins/{}/inverseBindMatrices", skin),
+                fmt::format("has {} matrices for {} joints", inverseBind->count(), joints.size()));
     }
     std::vector<dmat4> matrices;
     for (size_t i = 0; i < joints.size(); ++i) {

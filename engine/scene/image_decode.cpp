@@ -25,7 +25,8 @@ namespace tyndall {
 namespace {
 
 bool startsWith(std::span<const uint8_t> bytes, std::string_view magic, size_t offset = 0) {
-    return bytes.size() >= offset + magic.size() && std::memcmp(bytes.data() + offset, magic.data(), magic.size()) == 0;
+    return bytes.size() >= offset + magic.size() &&
+           std::memcmp(bytes.data() + offset, magic.data(), magic.size()) == 0;
 }
 
 /// Enough for a picture of one colour as PNG; what claims more is a bomb.
@@ -34,10 +35,12 @@ constexpr int64_t kMaxPixelsPerByte = 2048, kAlwaysAllowed = int64_t(1) << 24;
 Result<void> checkSize(int width, int height, size_t bytes) {
     if (width < 1 || height < 1 || width > kMaxTextureSide || height > kMaxTextureSide ||
         int64_t(width) * height > kMaxTexturePixels)
-        return Error{fmt::format("the picture is {}x{} pixels, but at most {} a side and {} million in all are read", width,
-                                 height, kMaxTextureSide, kMaxTexturePixels / 1000000)};
+        return Error{fmt::format(
+            "the picture is {}x{} pixels, but at most {} a side and {} million in all are read",
+            width, height, kMaxTextureSide, kMaxTexturePixels / 1000000)};
     if (int64_t(width) * height > std::max(kAlwaysAllowed, kMaxPixelsPerByte * int64_t(bytes)))
-        return Error{fmt::format("the picture claims {}x{} pixels in {} bytes, which cannot be", width, height, bytes)};
+        return Error{fmt::format("the picture claims {}x{} pixels in {} bytes, which cannot be",
+                                 width, height, bytes)};
     return {};
 }
 
@@ -51,13 +54,15 @@ ImageData makeImage(int width, int height, const uint8_t* rgba) {
 
 Result<ImageData> decodeWebp(std::span<const uint8_t> bytes) {
     int width = 0, height = 0;
-    if (!WebPGetInfo(bytes.data(), bytes.size(), &width, &height)) return Error{"the WebP picture is damaged"};
+    if (!WebPGetInfo(bytes.data(), bytes.size(), &width, &height))
+        return Error{"the WebP picture is damaged"};
     if (auto fits = checkSize(width, height, bytes.size()); !fits) return fits.error();
     ImageData image;
     image.width = width;
     image.height = height;
     image.rgba.resize(size_t(width) * size_t(height) * 4);
-    if (!WebPDecodeRGBAInto(bytes.data(), bytes.size(), image.rgba.data(), image.rgba.size(), width * 4))
+    if (!WebPDecodeRGBAInto(bytes.data(), bytes.size(), image.rgba.data(), image.rgba.size(),
+                            width * 4))
         return Error{"the WebP picture is damaged"};
     return image;
 }
@@ -66,10 +71,11 @@ Result<ImageData> decodeStb(std::span<const uint8_t> bytes, const char* format) 
     int width = 0, height = 0, channels = 0;
     const int size = int(std::min<size_t>(bytes.size(), size_t(1) << 30));
     if (!stbi_info_from_memory(bytes.data(), size, &width, &height, &channels))
-        return Error{fmt::format("the {} picture is damaged or of a kind that is not read", format)};
+        return Error{
+            fmt::format("the {} picture is damaged or of a kind that is not read", format)};
     if (auto fits = checkSize(width, height, bytes.size()); !fits) return fits.error();
-    const std::unique_ptr<stbi_uc, void (*)(void*)> pixels(stbi_load_from_memory(bytes.data(), size, &width, &height, &channels, 4),
-                                                           stbi_image_free);
+    const std::unique_ptr<stbi_uc, void (*)(void*)> pixels(
+        stbi_load_from_memory(bytes.data(), size, &width, &height, &channels, 4), stbi_image_free);
     if (!pixels) return Error{fmt::format("the {} picture is damaged", format)};
     return makeImage(width, height, pixels.get());
 }

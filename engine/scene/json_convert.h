@@ -14,7 +14,9 @@
 
 namespace tyndall {
 
-inline dvec3 toVector(const Json& json) { return {json[0].get<double>(), json[1].get<double>(), json[2].get<double>()}; }
+inline dvec3 toVector(const Json& json) {
+    return {json[0].get<double>(), json[1].get<double>(), json[2].get<double>()};
+}
 
 /// `otherwise` where the key is missing.
 inline vec3 colorOr(const Json& json, std::string_view key, const vec3& otherwise) {
@@ -28,8 +30,7 @@ inline float floatOr(const Json& json, std::string_view key, float otherwise) {
 }
 
 /// The place of `name` in a table; CHECKs that it is there (the schema saw to it).
-template <typename Names>
-int indexOf(const Names& names, std::string_view name) {
+template <typename Names> int indexOf(const Names& names, std::string_view name) {
     int index = 0;
     for (const std::string_view one : names) {
         if (one == name) return index;
@@ -39,15 +40,12 @@ int indexOf(const Names& names, std::string_view name) {
 }
 
 /// "is 'smok', which is no node's name; did you mean 'smoke'?"
-template <typename Map>
-std::string unknownName(const std::string& name, const Map& known) {
+template <typename Map> std::string unknownName(const std::string& name, const Map& known) {
     std::vector<std::string_view> names;
     for (const auto& [one, unused] : known) names.push_back(one);
     const std::string nearest = nearestName(name, names);
     return "is '" + name + "', which is not the name of a node of this file" +
            (nearest.empty() ? std::string() : "; did you mean '" + nearest + "'?");
 }
-
-
 
 } // namespace tyndall

@@ -18,7 +18,8 @@ bool hasType(const Json& value, std::string_view type) {
     if (type == "string") return value.is_string();
     if (type == "boolean") return value.is_boolean();
     if (type == "number") return value.is_number();
-    if (type == "integer") return value.is_number() && value.get<double>() == std::floor(value.get<double>());
+    if (type == "integer")
+        return value.is_number() && value.get<double>() == std::floor(value.get<double>());
     CHECK(false, "schema type '" + std::string(type) + "' is not supported");
 }
 
@@ -40,9 +41,11 @@ class Validator {
 public:
     explicit Validator(const Json& root) : root_(root) {}
 
-    Result<void> check(const Json& value, const Json& schemaHere, const std::string& pointer) const {
+    Result<void> check(const Json& value, const Json& schemaHere,
+                       const std::string& pointer) const {
         const Json& schema = resolved(schemaHere);
-        if (const auto branches = schema.find("anyOf"); branches != schema.end()) return checkAnyOf(value, *branches, pointer);
+        if (const auto branches = schema.find("anyOf"); branches != schema.end())
+            return checkAnyOf(value, *branches, pointer);
         if (auto wrong = checkTypeAndValue(value, schema, pointer); !wrong) return wrong;
         if (value.is_number()) return checkNumber(value, schema, pointer);
         if (value.is_array()) return checkArray(value, schema, pointer);
@@ -57,7 +60,8 @@ private:
 
     const Json& resolved(const Json& schema) const {
         const Json* here = &schema;
-        for (auto reference = here->find("$ref"); reference != here->end(); reference = here->find("$ref"))
+        for (auto reference = here->find("$ref"); reference != here->end();
+             reference = here->find("$ref"))
             here = &root_.at(Json::json_pointer(reference->get<std::string>().substr(1)));
         return *here;
     }
@@ -77,7 +81,8 @@ private:
         return type->is_string() ? type->get<std::string>() : listed(*type);
     }
 
-    Result<void> checkAnyOf(const Json& value, const Json& branches, const std::string& pointer) const {
+    Result<void> checkAnyOf(const Json& value, const Json& branches,
+                            const std::string& pointer) const {
         std::string types;
         for (const Json& branch : branches) {
             if (typeFits(value, resolved(branch))) return check(value, branch, pointer);
@@ -86,21 +91,27 @@ private:
         return wrong(pointer, fmt::format("is {} but must be of type {}", shown(value), types));
     }
 
-    static Result<void> checkTypeAndValue(const Json& value, const Json& schema, const std::string& pointer) {
-        if (!typeFits(value, schema)) return wrong(pointer, fmt::format("is {} but must be of type {}", shown(value), typeNames(schema)));
+    static Result<void> checkTypeAndValue(const Json& value, const Json& schema,
+                                          const std::string& pointer) {
+        if (!typeFits(value, schema))
+            return wrong(pointer, fmt::format("is {} but must be of type {}", shown(value),
+                                              typeNames(schema)));
         if (const auto only = schema.find("const"); only != schema.end() && value != *only)
             return wrong(pointer, fmt::format("is {} but must be {}", shown(value), only->dump()));
         if (const auto choice = schema.find("enum"); choice != schema.end()) {
             for (const Json& allowed : *choice)
                 if (value == allowed) return {};
-            return wrong(pointer, fmt::format("is {} but must be {}", shown(value), listed(*choice)));
+            return wrong(pointer,
+                         fmt::format("is {} but must be {}", shown(value), listed(*choice)));
         }
-        if (value.is_string() && value.get_ref<const std::string&>().size() < schema.value("minLength", size_t(0)))
+        if (value.is_string() &&
+            value.get_ref<const std::string&>().size() < schema.value("minLength", size_t(0)))
             return wrong(pointer, "must not be empty");
         return {};
     }
 
-    static Result<void> checkNumber(const Json& value, const Json& schema, const std::string& pointer) {
+    static Result<void> checkNumber(const Json& value, const Json& schema,
+                                    const std::string& pointer) {
         struct Rule {
             const char* keyword;
             const char* words;
@@ -115,31 +126,39 @@ private:
         for (const Rule& rule : kRules) {
             const auto limit = schema.find(rule.keyword);
             if (limit != schema.end() && !rule.holds(value.get<double>(), limit->get<double>()))
-                return wrong(pointer, fmt::format("is {} but must be {} {}", shown(value), rule.words, limit->dump()));
+                return wrong(pointer, fmt::format("is {} but must be {} {}", shown(value),
+                                                  rule.words, limit->dump()));
         }
         return {};
     }
 
-    Result<void> checkArray(const Json& value, const Json& schema, const std::string& pointer) const {
-        const size_t minimum = schema.value("minItems", size_t(0)), maximum = schema.value("maxItems", SIZE_MAX);
+    Result<void> checkArray(const Json& value, const Json& schema,
+                            const std::string& pointer) const {
+        const size_t minimum = schema.value("minItems", size_t(0)),
+                     maximum = schema.value("maxItems", SIZE_MAX);
         if (value.size() < minimum || value.size() > maximum) {
-            const std::string wanted = minimum == maximum    ? std::to_string(minimum)
-                                       : maximum == SIZE_MAX ? fmt::format("at least {}", minimum)
-                                                             : fmt::format("{} to {}", minimum, maximum);
-            return wrong(pointer, fmt::format("has {} elements but must have {}", value.size(), wanted));
+            const std::string wanted = minimum == maximum ? std::to_string(minimum)
+                                       : maximum == SIZE_MAX
+                                           ? fmt::format("at least {}", minimum)
+                                           : fmt::format("{} to {}", minimum, maximum);
+            return wrong(pointer,
+                         fmt::format("has {} elements but must have {}", value.size(), wanted));
         }
         const auto items = schema.find("items");
         if (items == schema.end()) return {};
         for (size_t i = 0; i < value.size(); ++i)
-            if (auto inside = check(value[i], *items, fmt::format("{}/{}", pointer, i)); !inside) return inside;
+            if (auto inside = check(value[i], *items, fmt::format("{}/{}", pointer, i)); !inside)
+                return inside;
         return {};
     }
 
-    Result<void> checkObject(const Json& value, const Json& schema, const std::string& pointer) const {
+    Result<void> checkObject(const Json& value, const Json& schema,
+                             const std::string& pointer) const {
         if (const auto required = schema.find("required"); required != schema.end())
             for (const Json& key : *required)
                 if (!value.contains(key.get<std::string>()))
-                    return wrong(pointer, fmt::format("lacks the key '{}', which is required", key.get<std::string>()));
+                    return wrong(pointer, fmt::format("lacks the key '{}', which is required",
+                                                      key.get<std::string>()));
         const Json none = Json::object();
         const auto found = schema.find("properties");
         const Json& properties = found == schema.end() ? none : *found;
@@ -157,14 +176,17 @@ private:
         return {};
     }
 
-    static Error unknownKey(const std::string& key, const Json& properties, const std::string& pointer) {
+    static Error unknownKey(const std::string& key, const Json& properties,
+                            const std::string& pointer) {
         std::vector<std::string_view> names;
         for (const auto& [name, unused] : properties.items()) names.push_back(name);
         const std::string nearest = nearestName(key, names);
         std::string all;
-        for (const std::string_view name : names) all += (all.empty() ? "" : ", ") + std::string(name);
+        for (const std::string_view name : names)
+            all += (all.empty() ? "" : ", ") + std::string(name);
         return wrong(pointer, fmt::format("has the unknown key '{}'; {}", key.substr(0, 60),
-                                          nearest.empty() ? "it takes " + all : "did you mean '" + nearest + "'?"));
+                                          nearest.empty() ? "it takes " + all
+                                                          : "did you mean '" + nearest + "'?"));
     }
 
     const Json& root_;
@@ -172,7 +194,9 @@ private:
 
 } // namespace
 
-Result<void> validateJson(const Json& value, const Json& schema) { return Validator(schema).check(value, schema, ""); }
+Result<void> validateJson(const Json& value, const Json& schema) {
+    return Validator(schema).check(value, schema, "");
+}
 
 const Json& sceneFileSchema() {
     static const Json schema = Json::parse(kSceneSchemaText);

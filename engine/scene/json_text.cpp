@@ -18,7 +18,8 @@ Place placeOf(std::string_view text, size_t byte) {
     const std::string_view before = text.substr(0, std::min(byte, text.size()));
     Place place;
     place.line += size_t(std::count(before.begin(), before.end(), '\n'));
-    place.column += before.size() - (before.rfind('\n') == std::string_view::npos ? 0 : before.rfind('\n') + 1);
+    place.column +=
+        before.size() - (before.rfind('\n') == std::string_view::npos ? 0 : before.rfind('\n') + 1);
     return place;
 }
 
@@ -65,7 +66,9 @@ public:
     bool binary(binary_t&) override { return true; }
     bool start_array(std::size_t) override { return true; }
     bool end_array() override { return true; }
-    bool parse_error(std::size_t, const std::string&, const nlohmann::detail::exception&) override { return false; }
+    bool parse_error(std::size_t, const std::string&, const nlohmann::detail::exception&) override {
+        return false;
+    }
 
     std::string duplicate;
 
@@ -77,9 +80,12 @@ private:
 std::string reason(const char* what) {
     std::string text = what;
     const size_t syntax = text.find("syntax error");
-    if (syntax != std::string::npos) text = text.substr(syntax);
-    else if (const size_t bracket = text.find("] "); bracket != std::string::npos) text = text.substr(bracket + 2);
-    std::replace_if(text.begin(), text.end(), [](char c) { return static_cast<unsigned char>(c) < 32; }, ' ');
+    if (syntax != std::string::npos)
+        text = text.substr(syntax);
+    else if (const size_t bracket = text.find("] "); bracket != std::string::npos)
+        text = text.substr(bracket + 2);
+    std::replace_if(
+        text.begin(), text.end(), [](char c) { return static_cast<unsigned char>(c) < 32; }, ' ');
     return text.substr(0, 300);
 }
 
@@ -88,17 +94,21 @@ std::string reason(const char* what) {
 Result<Json> parseJson(std::string_view text) {
     if (const size_t deep = tooDeepAt(text); deep != std::string_view::npos) {
         const Place place = placeOf(text, deep);
-        return Error{fmt::format("line {}, column {}: JSON nests deeper than {} levels", place.line, place.column, kMaxJsonDepth)};
+        return Error{fmt::format("line {}, column {}: JSON nests deeper than {} levels", place.line,
+                                 place.column, kMaxJsonDepth)};
     }
     try {
         Json json = Json::parse(text.begin(), text.end());
         DuplicateFinder finder;
         Json::sax_parse(text.begin(), text.end(), &finder);
-        if (!finder.duplicate.empty()) return Error{fmt::format("key '{}' stands twice in one JSON object", finder.duplicate.substr(0, 60))};
+        if (!finder.duplicate.empty())
+            return Error{fmt::format("key '{}' stands twice in one JSON object",
+                                     finder.duplicate.substr(0, 60))};
         return json;
     } catch (const nlohmann::json::parse_error& error) {
         const Place place = placeOf(text, error.byte == 0 ? 0 : error.byte - 1);
-        return Error{fmt::format("line {}, column {}: not valid JSON: {}", place.line, place.column, reason(error.what()))};
+        return Error{fmt::format("line {}, column {}: not valid JSON: {}", place.line, place.column,
+                                 reason(error.what()))};
     } catch (const nlohmann::json::exception& error) {
         return Error{fmt::format("not valid JSON: {}", reason(error.what()))};
     }

@@ -9,8 +9,7 @@ namespace {
 
 constexpr uint32_t kUnused = 0xffffffffu;
 
-template <typename T>
-void gather(std::vector<T>& values, std::span<const uint32_t> from) {
+template <typename T> void gather(std::vector<T>& values, std::span<const uint32_t> from) {
     if (values.empty()) return;
     std::vector<T> result;
     result.reserve(from.size());
@@ -53,8 +52,10 @@ struct UvFrame {
 UvFrame uvFrame(const Mesh& mesh, int uvSet, const uint32_t* corner) {
     const auto& uvs = mesh.uvs[size_t(uvSet)];
     const dvec3 p0 = mesh.positions[corner[0]];
-    const dvec3 e1 = dvec3(mesh.positions[corner[1]]) - p0, e2 = dvec3(mesh.positions[corner[2]]) - p0;
-    const dvec2 d1 = dvec2(uvs[corner[1]]) - dvec2(uvs[corner[0]]), d2 = dvec2(uvs[corner[2]]) - dvec2(uvs[corner[0]]);
+    const dvec3 e1 = dvec3(mesh.positions[corner[1]]) - p0,
+                e2 = dvec3(mesh.positions[corner[2]]) - p0;
+    const dvec2 d1 = dvec2(uvs[corner[1]]) - dvec2(uvs[corner[0]]),
+                d2 = dvec2(uvs[corner[2]]) - dvec2(uvs[corner[0]]);
     const double area = d1.x * d2.y - d2.x * d1.y;
     if (!(std::abs(area) > 0) || !std::isfinite(area)) return {};
     const dvec3 tangent = (e1 * d2.y - e2 * d1.y) * (area > 0 ? 1.0 : -1.0);
@@ -87,7 +88,8 @@ void splitByHandedness(Mesh& mesh, const std::vector<UvFrame>& frames) {
 
 double cornerAngle(const Mesh& mesh, const uint32_t* corner, size_t k) {
     const dvec3 p = mesh.positions[corner[k]];
-    const dvec3 a = dvec3(mesh.positions[corner[(k + 1) % 3]]) - p, b = dvec3(mesh.positions[corner[(k + 2) % 3]]) - p;
+    const dvec3 a = dvec3(mesh.positions[corner[(k + 1) % 3]]) - p,
+                b = dvec3(mesh.positions[corner[(k + 2) % 3]]) - p;
     const double lengths = usableLength(a) * usableLength(b);
     return lengths > 0 ? std::acos(glm::clamp(glm::dot(a, b) / lengths, -1.0, 1.0)) : 0;
 }
@@ -109,7 +111,8 @@ void makeFlatNormals(Mesh& mesh) {
     mesh.indices.resize(from.size());
     mesh.normals.resize(from.size());
     for (size_t i = 0; i < from.size(); i += 3) {
-        const vec3 normal(normalOfTriangle(mesh.positions[i], mesh.positions[i + 1], mesh.positions[i + 2]));
+        const vec3 normal(
+            normalOfTriangle(mesh.positions[i], mesh.positions[i + 1], mesh.positions[i + 2]));
         for (size_t k = 0; k < 3; ++k) {
             mesh.indices[i + k] = uint32_t(i + k);
             mesh.normals[i + k] = normal;
@@ -120,10 +123,12 @@ void makeFlatNormals(Mesh& mesh) {
 void makeTangents(Mesh& mesh, int uvSet) {
     CHECK(mesh.topology == MeshTopology::Triangles && mesh.indices.size() % 3 == 0);
     CHECK(mesh.normals.size() == mesh.positions.size());
-    CHECK(uvSet >= 0 && uvSet < kMaxUvSets && mesh.uvs[size_t(uvSet)].size() == mesh.positions.size());
+    CHECK(uvSet >= 0 && uvSet < kMaxUvSets &&
+          mesh.uvs[size_t(uvSet)].size() == mesh.positions.size());
     mesh.tangents.clear();
     std::vector<UvFrame> frames(mesh.indices.size() / 3);
-    for (size_t t = 0; t < frames.size(); ++t) frames[t] = uvFrame(mesh, uvSet, &mesh.indices[3 * t]);
+    for (size_t t = 0; t < frames.size(); ++t)
+        frames[t] = uvFrame(mesh, uvSet, &mesh.indices[3 * t]);
     splitByHandedness(mesh, frames);
 
     std::vector<dvec3> sum(mesh.positions.size(), dvec3(0));
@@ -154,7 +159,8 @@ void dropUnusedVertices(Mesh& mesh) {
         }
         index = to[index];
     }
-    if (from.size() < mesh.positions.size()) gatherVertices(mesh, from);
+    if (from.size() < mesh.positions.size())
+        gatherVertices(mesh, from);
     else
         for (uint32_t& index : mesh.indices) index = from[index];
 }

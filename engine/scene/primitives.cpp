@@ -8,7 +8,8 @@
 namespace tyndall {
 namespace {
 
-constexpr uint32_t kRound = 128; // segments around a sphere, disk or cylinder: chord error 0.03 % of the radius
+constexpr uint32_t kRound =
+    128; // segments around a sphere, disk or cylinder: chord error 0.03 % of the radius
 constexpr uint32_t kSphereRows = 64;
 
 uint32_t addVertex(Mesh& mesh, const dvec3& position, const dvec3& normal, const dvec2& uv) {
@@ -18,7 +19,9 @@ uint32_t addVertex(Mesh& mesh, const dvec3& position, const dvec3& normal, const
     return uint32_t(mesh.positions.size() - 1);
 }
 
-void addTriangle(Mesh& mesh, uint32_t a, uint32_t b, uint32_t c) { mesh.indices.insert(mesh.indices.end(), {a, b, c}); }
+void addTriangle(Mesh& mesh, uint32_t a, uint32_t b, uint32_t c) {
+    mesh.indices.insert(mesh.indices.end(), {a, b, c});
+}
 
 /// A parallelogram around `centre`; `right` and `up` are half edges, right × up points outward.
 /// UVs have v downwards, as images do.
@@ -57,7 +60,8 @@ void addSphere(Mesh& mesh, const dvec3& half) {
         for (uint32_t segment = 0; segment <= kRound; ++segment) {
             const dvec2 circle = onCircle(segment);
             const dvec3 unit(ring * circle.x, height, -ring * circle.y);
-            addVertex(mesh, unit * half, unit / half, {double(segment) / kRound, double(row) / kSphereRows});
+            addVertex(mesh, unit * half, unit / half,
+                      {double(segment) / kRound, double(row) / kSphereRows});
         }
     }
     for (uint32_t row = 0; row < kSphereRows; ++row)
@@ -78,8 +82,10 @@ void addDisk(Mesh& mesh, const dvec3& half, double height, double up) {
     }
     for (uint32_t segment = 0; segment < kRound; ++segment) {
         const uint32_t a = centre + 1 + segment;
-        if (up > 0) addTriangle(mesh, centre, a, a + 1);
-        else addTriangle(mesh, centre, a + 1, a);
+        if (up > 0)
+            addTriangle(mesh, centre, a, a + 1);
+        else
+            addTriangle(mesh, centre, a + 1, a);
     }
 }
 
@@ -104,7 +110,8 @@ void addCylinder(Mesh& mesh, const dvec3& half) {
 } // namespace
 
 Mesh makePrimitive(const Primitive& primitive) {
-    const bool flat = primitive.shape == PrimitiveShape::Plane || primitive.shape == PrimitiveShape::Disk;
+    const bool flat =
+        primitive.shape == PrimitiveShape::Plane || primitive.shape == PrimitiveShape::Disk;
     CHECK(primitive.size.x > 0 && primitive.size.z > 0 && (flat || primitive.size.y > 0));
     Mesh mesh;
     mesh.name = kPrimitiveShapeNames[size_t(primitive.shape)];
@@ -112,7 +119,9 @@ Mesh makePrimitive(const Primitive& primitive) {
     switch (primitive.shape) {
     case PrimitiveShape::Box: addBox(mesh, half); break;
     case PrimitiveShape::Sphere: addSphere(mesh, half); break;
-    case PrimitiveShape::Plane: addQuad(mesh, dvec3(0), dvec3(half.x, 0, 0), dvec3(0, 0, -half.z)); break;
+    case PrimitiveShape::Plane:
+        addQuad(mesh, dvec3(0), dvec3(half.x, 0, 0), dvec3(0, 0, -half.z));
+        break;
     case PrimitiveShape::Disk: addDisk(mesh, half, 0, 1); break;
     case PrimitiveShape::Cylinder: addCylinder(mesh, half); break;
     }

@@ -10,7 +10,8 @@
 namespace tyndall {
 
 /// In the order of PrimitiveShape.
-inline constexpr std::array<std::string_view, 5> kPrimitiveShapeNames = {"box", "sphere", "plane", "disk", "cylinder"};
+inline constexpr std::array<std::string_view, 5> kPrimitiveShapeNames = {"box", "sphere", "plane",
+                                                                         "disk", "cylinder"};
 
 /// Box: `size` is the full extent. Sphere: diameters (64×128 faces, vertices on the ellipsoid, exact normals).
 /// Plane and disk: in XZ, facing +Y, extents size.x and size.z. Cylinder: axis Y, diameters x and z, height y, capped.

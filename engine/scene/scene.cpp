@@ -30,7 +30,8 @@ dmat4 Node::localTransform() const {
 
 const Material& Scene::materialOf(const Mesh& mesh) const {
     if (mesh.material == kNone) return kDefaultMaterial;
-    CHECK(mesh.material >= 0 && size_t(mesh.material) < materials.size(), "mesh '" + mesh.name + "'");
+    CHECK(mesh.material >= 0 && size_t(mesh.material) < materials.size(),
+          "mesh '" + mesh.name + "'");
     return materials[size_t(mesh.material)];
 }
 
@@ -39,7 +40,8 @@ std::vector<dmat4> Scene::worldTransforms() const {
     for (size_t i = 0; i < nodes.size(); ++i) {
         const int parent = nodes[i].parent;
         CHECK(parent < int(i), "node '" + nodes[i].name + "' comes before its parent");
-        world[i] = parent == kNone ? nodes[i].localTransform() : world[size_t(parent)] * nodes[i].localTransform();
+        world[i] = parent == kNone ? nodes[i].localTransform()
+                                   : world[size_t(parent)] * nodes[i].localTransform();
     }
     return world;
 }
@@ -63,8 +65,10 @@ Bounds Scene::worldBounds() const {
         Bounds local;
         for (const int mesh : node.meshes) local.include(meshes[size_t(mesh)].bounds);
         if (node.instances.empty()) bounds.include(local.transformed(world[i]));
-        for (const dmat4& instance : node.instances) bounds.include(local.transformed(world[i] * instance));
-        if (node.medium != kNone) bounds.include(localBounds(media[size_t(node.medium)]).transformed(world[i]));
+        for (const dmat4& instance : node.instances)
+            bounds.include(local.transformed(world[i] * instance));
+        if (node.medium != kNone)
+            bounds.include(localBounds(media[size_t(node.medium)]).transformed(world[i]));
     }
     return bounds;
 }

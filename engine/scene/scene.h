@@ -59,14 +59,16 @@ struct Material {
     std::string name;
     vec4 baseColor{1};
     float metallic = 1, roughness = 1;
-    float specular = 1;         // KHR_materials_specular: scales the dielectric F0 of 0.04; 0 is exactly Lambert
+    float specular =
+        1; // KHR_materials_specular: scales the dielectric F0 of 0.04; 0 is exactly Lambert
     vec3 emissive{0};
     float normalScale = 1, occlusionStrength = 1;
     AlphaMode alphaMode = AlphaMode::Opaque;
     float alphaCutoff = 0.5f;
     bool doubleSided = false;
     bool unlit = false;
-    TextureRef baseColorTexture, metallicRoughnessTexture, normalTexture, occlusionTexture, emissiveTexture;
+    TextureRef baseColorTexture, metallicRoughnessTexture, normalTexture, occlusionTexture,
+        emissiveTexture;
     Version version = 0;
 };
 
@@ -79,12 +81,13 @@ struct Mesh {
     MeshTopology topology = MeshTopology::Triangles;
     int material = kNone; // kNone: the default material
     std::vector<vec3> positions;
-    std::vector<vec3> normals;  // empty for lines and points without normals: drawn unlit, facing the camera
+    std::vector<vec3>
+        normals; // empty for lines and points without normals: drawn unlit, facing the camera
     std::vector<vec4> tangents; // w: handedness; empty without a normal texture
     std::array<std::vector<vec2>, kMaxUvSets> uvs;
-    std::vector<vec4> colors;   // linear; empty: white
+    std::vector<vec4> colors; // linear; empty: white
     std::vector<uint32_t> indices;
-    Bounds bounds;              // of positions
+    Bounds bounds; // of positions
     Version version = 0;
 };
 
@@ -95,12 +98,13 @@ struct Light {
     std::string name;
     LightType type = LightType::Point;
     vec3 color{1};
-    float intensity = 1;       // candela (point, spot), lux (directional); unused by rect
-    float range = 0;           // metres; 0: unbounded (KHR_lights_punctual's window otherwise)
-    float radius = 0;          // sphere radius in metres (point, spot); for directional: angular radius in radians
+    float intensity = 1; // candela (point, spot), lux (directional); unused by rect
+    float range = 0;     // metres; 0: unbounded (KHR_lights_punctual's window otherwise)
+    float radius =
+        0; // sphere radius in metres (point, spot); for directional: angular radius in radians
     float innerConeAngle = 0, outerConeAngle = float(kPi / 4);
-    vec2 size{1};              // rect: metres in node space
-    vec3 radiance{0};          // rect: nits
+    vec2 size{1};     // rect: metres in node space
+    vec3 radiance{0}; // rect: nits
     bool castsShadows = true;
     Version version = 0;
 };
@@ -110,17 +114,17 @@ enum class CameraType : int32_t { Perspective = 0, Orthographic = 1 };
 struct Camera {
     std::string name;
     CameraType type = CameraType::Perspective;
-    double yfov = 0.8;  // radians, full vertical angle
-    double ymag = 1;    // orthographic: half the height in metres
+    double yfov = 0.8; // radians, full vertical angle
+    double ymag = 1;   // orthographic: half the height in metres
     double znear = 0.05;
     Version version = 0;
 };
 
 struct Environment {
-    vec3 radiance{0};                  // nits; used where there is no image
+    vec3 radiance{0};                   // nits; used where there is no image
     std::shared_ptr<const Image> image; // RGB latitude-longitude, linear, top row first
-    float intensity = 1;               // multiplies the image
-    float rotation = 0;                // radians, right-handed about +Y
+    float intensity = 1;                // multiplies the image
+    float rotation = 0;                 // radians, right-handed about +Y
     std::string file;
     Version version = 0;
 };
@@ -165,18 +169,19 @@ struct ParticleGenerator {
 /// A node carries at most one of each. Local transform is translation·rotation·scale or any matrix.
 struct Node {
     std::string name;
-    int parent = kNone;               // always smaller than its own index
+    int parent = kNone; // always smaller than its own index
     dvec3 translation{0}, scale{1};
     dquat rotation{1, 0, 0, 0};
-    std::optional<dmat4> matrix;      // when given, replaces the three above
+    std::optional<dmat4> matrix; // when given, replaces the three above
     bool visible = true;
-    std::vector<int> meshes;          // drawn with this node's transform
-    std::vector<dmat4> instances;     // EXT_mesh_gpu_instancing, node space; empty: one, identity
+    std::vector<int> meshes;      // drawn with this node's transform
+    std::vector<dmat4> instances; // EXT_mesh_gpu_instancing, node space; empty: one, identity
     int light = kNone, camera = kNone, medium = kNone;
-    int source = kNone;               // index of the scene-file node that brought it in; kNone for those nodes themselves
+    int source =
+        kNone; // index of the scene-file node that brought it in; kNone for those nodes themselves
 
     // As written in the scene file, for saving and for the clock.
-    std::string gltf;                 // the file mounted here
+    std::string gltf; // the file mounted here
     std::optional<Primitive> primitive;
     std::vector<Animation> animations;
     std::optional<GridSequence> sequence;
@@ -186,9 +191,10 @@ struct Node {
 
 /// What changed last, per kind: caches and skips build on these.
 struct SceneVersions {
-    Version structure = 0;  // nodes or meshes added, removed, reparented
+    Version structure = 0; // nodes or meshes added, removed, reparented
     Version transforms = 0;
-    Version meshes = 0, materials = 0, textures = 0, lights = 0, media = 0, cameras = 0, environment = 0;
+    Version meshes = 0, materials = 0, textures = 0, lights = 0, media = 0, cameras = 0,
+            environment = 0;
 };
 
 struct Scene {
@@ -205,7 +211,7 @@ struct Scene {
     std::vector<Medium> media;
     Environment environment;
 
-    int activeCamera = kNone;   // a node with a camera
+    int activeCamera = kNone; // a node with a camera
     float ev100 = 0;
     std::vector<std::string> settings; // "KEY=VALUE" from the file, in order
 

@@ -8,9 +8,9 @@
 namespace tyndall {
 namespace {
 
-template <typename T>
-T& at(std::vector<T>& values, int index, const char* what) {
-    CHECK(index >= 0 && size_t(index) < values.size(), std::string(what) + " " + std::to_string(index) + " is not in the scene");
+template <typename T> T& at(std::vector<T>& values, int index, const char* what) {
+    CHECK(index >= 0 && size_t(index) < values.size(),
+          std::string(what) + " " + std::to_string(index) + " is not in the scene");
     return values[size_t(index)];
 }
 
@@ -20,16 +20,19 @@ void replace(std::vector<T>& values, int index, T value, const char* what, Versi
     at(values, index, what) = std::move(value);
 }
 
-template <typename T>
-int append(std::vector<T>& values, T value, Version& kind) {
+template <typename T> int append(std::vector<T>& values, T value, Version& kind) {
     value.version = kind = nextVersion();
     values.push_back(std::move(value));
     return int(values.size() - 1);
 }
 
-bool finite(const dvec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
+bool finite(const dvec3& v) {
+    return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+}
 
-int remapped(const std::vector<int>& newIndex, int old) { return old == kNone ? kNone : newIndex[size_t(old)]; }
+int remapped(const std::vector<int>& newIndex, int old) {
+    return old == kNone ? kNone : newIndex[size_t(old)];
+}
 
 /// Puts the nodes of `order` (old indices) in that order and renames every index to a node.
 std::vector<int> reorder(Scene& scene, const std::vector<int>& order) {
@@ -56,7 +59,9 @@ std::vector<int> parentsFirst(const std::vector<Node>& nodes) {
     std::vector<bool> placed(nodes.size(), false);
     std::vector<int> chain;
     for (size_t i = 0; i < nodes.size(); ++i) {
-        for (int node = int(i); node != kNone && !placed[size_t(node)]; node = nodes[size_t(node)].parent) chain.push_back(node);
+        for (int node = int(i); node != kNone && !placed[size_t(node)];
+             node = nodes[size_t(node)].parent)
+            chain.push_back(node);
         for (; !chain.empty(); chain.pop_back()) {
             placed[size_t(chain.back())] = true;
             order.push_back(chain.back());
@@ -67,8 +72,10 @@ std::vector<int> parentsFirst(const std::vector<Node>& nodes) {
 
 } // namespace
 
-void setNodeTransform(Scene& scene, int node, const dvec3& translation, const dquat& rotation, const dvec3& scale) {
-    CHECK(finite(translation) && finite(scale) && finite({rotation.x, rotation.y, rotation.z}) && std::isfinite(rotation.w));
+void setNodeTransform(Scene& scene, int node, const dvec3& translation, const dquat& rotation,
+                      const dvec3& scale) {
+    CHECK(finite(translation) && finite(scale) && finite({rotation.x, rotation.y, rotation.z}) &&
+          std::isfinite(rotation.w));
     Node& target = at(scene.nodes, node, "node");
     target.translation = translation;
     target.rotation = rotation;
@@ -88,19 +95,25 @@ void setNodeVisible(Scene& scene, int node, bool visible) {
     scene.versions.structure = nextVersion();
 }
 
-void renameNode(Scene& scene, int node, std::string name) { at(scene.nodes, node, "node").name = std::move(name); }
+void renameNode(Scene& scene, int node, std::string name) {
+    at(scene.nodes, node, "node").name = std::move(name);
+}
 
 void setMaterial(Scene& scene, int material, Material value) {
     replace(scene.materials, material, std::move(value), "material", scene.versions.materials);
 }
-void setLight(Scene& scene, int light, Light value) { replace(scene.lights, light, std::move(value), "light", scene.versions.lights); }
+void setLight(Scene& scene, int light, Light value) {
+    replace(scene.lights, light, std::move(value), "light", scene.versions.lights);
+}
 void setCamera(Scene& scene, int camera, Camera value) {
     replace(scene.cameras, camera, std::move(value), "camera", scene.versions.cameras);
 }
 void setMedium(Scene& scene, int medium, Medium value) {
     replace(scene.media, medium, std::move(value), "medium", scene.versions.media);
 }
-void setMesh(Scene& scene, int mesh, Mesh value) { replace(scene.meshes, mesh, std::move(value), "mesh", scene.versions.meshes); }
+void setMesh(Scene& scene, int mesh, Mesh value) {
+    replace(scene.meshes, mesh, std::move(value), "mesh", scene.versions.meshes);
+}
 
 void setEnvironment(Scene& scene, Environment value) {
     value.version = scene.versions.environment = nextVersion();
@@ -108,23 +121,35 @@ void setEnvironment(Scene& scene, Environment value) {
 }
 
 void setActiveCamera(Scene& scene, int node) {
-    CHECK(node == kNone || at(scene.nodes, node, "node").camera != kNone, "the active camera is a node with a camera");
+    CHECK(node == kNone || at(scene.nodes, node, "node").camera != kNone,
+          "the active camera is a node with a camera");
     scene.activeCamera = node;
     scene.versions.cameras = nextVersion();
 }
 
 int addNode(Scene& scene, Node node) {
-    CHECK(node.parent >= kNone && node.parent < int(scene.nodes.size()), "node '" + node.name + "' has an unknown parent");
+    CHECK(node.parent >= kNone && node.parent < int(scene.nodes.size()),
+          "node '" + node.name + "' has an unknown parent");
     scene.nodes.push_back(std::move(node));
     scene.versions.structure = scene.versions.transforms = nextVersion();
     return int(scene.nodes.size() - 1);
 }
 
-int addMesh(Scene& scene, Mesh mesh) { return append(scene.meshes, std::move(mesh), scene.versions.meshes); }
-int addMaterial(Scene& scene, Material material) { return append(scene.materials, std::move(material), scene.versions.materials); }
-int addLight(Scene& scene, Light light) { return append(scene.lights, std::move(light), scene.versions.lights); }
-int addCamera(Scene& scene, Camera camera) { return append(scene.cameras, std::move(camera), scene.versions.cameras); }
-int addMedium(Scene& scene, Medium medium) { return append(scene.media, std::move(medium), scene.versions.media); }
+int addMesh(Scene& scene, Mesh mesh) {
+    return append(scene.meshes, std::move(mesh), scene.versions.meshes);
+}
+int addMaterial(Scene& scene, Material material) {
+    return append(scene.materials, std::move(material), scene.versions.materials);
+}
+int addLight(Scene& scene, Light light) {
+    return append(scene.lights, std::move(light), scene.versions.lights);
+}
+int addCamera(Scene& scene, Camera camera) {
+    return append(scene.cameras, std::move(camera), scene.versions.cameras);
+}
+int addMedium(Scene& scene, Medium medium) {
+    return append(scene.media, std::move(medium), scene.versions.media);
+}
 
 std::vector<int> removeNode(Scene& scene, int node) {
     at(scene.nodes, node, "node");

@@ -10,7 +10,8 @@
 namespace tyndall {
 
 /// Replaces the local transform (and any matrix). CHECKs: finite numbers.
-void setNodeTransform(Scene& scene, int node, const dvec3& translation, const dquat& rotation, const dvec3& scale);
+void setNodeTransform(Scene& scene, int node, const dvec3& translation, const dquat& rotation,
+                      const dvec3& scale);
 void setNodeMatrix(Scene& scene, int node, const dmat4& parentFromNode);
 void setNodeVisible(Scene& scene, int node, bool visible);
 void renameNode(Scene& scene, int node, std::string name);

@@ -18,7 +18,8 @@ namespace {
 constexpr size_t kMaxSceneFileBytes = size_t(1) << 28;
 
 std::string lowerCase(std::string text) {
-    std::transform(text.begin(), text.end(), text.begin(), [](char c) { return c >= 'A' && c <= 'Z' ? char(c - 'A' + 'a') : c; });
+    std::transform(text.begin(), text.end(), text.begin(),
+                   [](char c) { return c >= 'A' && c <= 'Z' ? char(c - 'A' + 'a') : c; });
     return text;
 }
 
@@ -63,27 +64,32 @@ Result<void> checkTransforms(const Scene& scene) {
     const std::vector<dmat4> world = scene.worldTransforms();
     for (size_t i = 0; i < world.size(); ++i) {
         if (!finite(world[i]))
-            return Error{fmt::format("{}: node '{}' (number {}) ends up beyond 1e30 metres; smaller scales and distances are wanted",
-                                     scene.path.string(), scene.nodes[i].name, i)};
+            return Error{fmt::format(
+                "{}: node '{}' (number {}) ends up beyond 1e30 metres; smaller scales and distances are wanted",
+                scene.path.string(), scene.nodes[i].name, i)};
         for (const dmat4& instance : scene.nodes[i].instances)
             if (!finite(world[i] * instance))
-                return Error{fmt::format("{}: an instance of node '{}' (number {}) ends up beyond 1e30 metres", scene.path.string(),
-                                         scene.nodes[i].name, i)};
+                return Error{fmt::format(
+                    "{}: an instance of node '{}' (number {}) ends up beyond 1e30 metres",
+                    scene.path.string(), scene.nodes[i].name, i)};
     }
     return {};
 }
 
 bool lightFromInfinity(const Scene& scene) {
     if (scene.environment.image || scene.environment.radiance != vec3(0)) return true;
-    return std::any_of(scene.lights.begin(), scene.lights.end(), [](const Light& light) { return light.type == LightType::Directional; });
+    return std::any_of(scene.lights.begin(), scene.lights.end(),
+                       [](const Light& light) { return light.type == LightType::Directional; });
 }
 
 void noteEndlessMedia(LoadedScene& loaded) {
     if (!lightFromInfinity(loaded.scene)) return;
     for (const Medium& medium : loaded.scene.media)
         if (medium.kind == MediumKind::Everywhere && medium.extinction() != vec3(0))
-            loaded.notes.push_back(fmt::format("medium '{}' has no end, so that no light from infinity (sun, sky) gets through it; "
-                                               "the shape 'height' or 'box' would let it in", medium.name));
+            loaded.notes.push_back(fmt::format(
+                "medium '{}' has no end, so that no light from infinity (sun, sky) gets through it; "
+                "the shape 'height' or 'box' would let it in",
+                medium.name));
 }
 
 Result<LoadedScene> load(const fs::path& path, const LoadOptions& options) {
@@ -92,12 +98,16 @@ Result<LoadedScene> load(const fs::path& path, const LoadOptions& options) {
     loaded.scene.name = path.stem().string();
     const std::string extension = lowerCase(path.extension().string());
     Result<void> read;
-    if (extension == ".json") read = readSceneFile(loaded, path, options);
-    else if (extension == ".gltf" || extension == ".glb") read = readGltfFile(loaded, path, options);
-    else if (extension == ".vdb" || extension == ".nvdb") read = readVolumeFile(loaded, path);
+    if (extension == ".json")
+        read = readSceneFile(loaded, path, options);
+    else if (extension == ".gltf" || extension == ".glb")
+        read = readGltfFile(loaded, path, options);
+    else if (extension == ".vdb" || extension == ".nvdb")
+        read = readVolumeFile(loaded, path);
     else
-        return Error{fmt::format("{}: '{}' is not the ending of a scene; .scene.json, .gltf, .glb, .vdb and .nvdb are read", path.string(),
-                                 extension)};
+        return Error{fmt::format(
+            "{}: '{}' is not the ending of a scene; .scene.json, .gltf, .glb, .vdb and .nvdb are read",
+            path.string(), extension)};
     if (!read) return read.error();
     if (auto sane = checkTransforms(loaded.scene); !sane) return sane.error();
     noteEndlessMedia(loaded);
@@ -111,9 +121,11 @@ Result<LoadedScene> loadScene(const fs::path& path, const LoadOptions& options) 
     try {
         return load(path, options);
     } catch (const std::bad_alloc&) {
-        return Error{fmt::format("{}: there is not enough memory to load this scene", path.string())};
+        return Error{
+            fmt::format("{}: there is not enough memory to load this scene", path.string())};
     } catch (const std::length_error&) {
-        return Error{fmt::format("{}: there is not enough memory to load this scene", path.string())};
+        return Error{
+            fmt::format("{}: there is not enough memory to load this scene", path.string())};
     } catch (const fs::filesystem_error& error) {
         return Error{fmt::format("{}: {}", path.string(), error.code().message())};
     }

@@ -14,8 +14,10 @@ namespace tyndall {
 
 struct LoadedScene {
     Scene scene;
-    std::vector<std::string> supplied; // "a camera that frames the scene", for the zero-configuration start
-    std::vector<std::string> notes;    // mapped synonyms, ignored extensions, sanitised voxels: one sentence each
+    std::vector<std::string>
+        supplied; // "a camera that frames the scene", for the zero-configuration start
+    std::vector<std::string>
+        notes; // mapped synonyms, ignored extensions, sanitised voxels: one sentence each
 };
 
 struct LoadOptions {

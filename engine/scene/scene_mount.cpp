@@ -9,8 +9,7 @@ void shift(int& index, size_t by) {
     if (index != kNone) index += int(by);
 }
 
-template <typename T>
-void moveInto(std::vector<T>& to, std::vector<T>& from) {
+template <typename T> void moveInto(std::vector<T>& to, std::vector<T>& from) {
     to.insert(to.end(), std::make_move_iterator(from.begin()), std::make_move_iterator(from.end()));
 }
 
@@ -18,8 +17,9 @@ void moveInto(std::vector<T>& to, std::vector<T>& from) {
 void moveAssets(Scene& scene, Scene& part) {
     for (Texture& texture : part.textures) shift(texture.image, scene.images.size());
     for (Material& material : part.materials)
-        for (TextureRef* reference : {&material.baseColorTexture, &material.metallicRoughnessTexture, &material.normalTexture,
-                                      &material.occlusionTexture, &material.emissiveTexture})
+        for (TextureRef* reference :
+             {&material.baseColorTexture, &material.metallicRoughnessTexture,
+              &material.normalTexture, &material.occlusionTexture, &material.emissiveTexture})
             shift(reference->texture, scene.textures.size());
     for (Mesh& mesh : part.meshes) shift(mesh.material, scene.materials.size());
     for (Node& node : part.nodes) {
@@ -37,7 +37,8 @@ void moveAssets(Scene& scene, Scene& part) {
 
 } // namespace
 
-Result<void> GltfMounts::mount(LoadedScene& loaded, int node, const std::filesystem::path& file, const LoadOptions& options) {
+Result<void> GltfMounts::mount(LoadedScene& loaded, int node, const std::filesystem::path& file,
+                               const LoadOptions& options) {
     const std::filesystem::path key = file.lexically_normal();
     auto found = mounted_.find(key);
     if (found == mounted_.end()) {
@@ -49,8 +50,10 @@ Result<void> GltfMounts::mount(LoadedScene& loaded, int node, const std::filesys
     }
     const size_t first = loaded.scene.nodes.size();
     for (Node copy : found->second.nodes) {
-        if (copy.parent == kNone) copy.parent = node;
-        else shift(copy.parent, first);
+        if (copy.parent == kNone)
+            copy.parent = node;
+        else
+            shift(copy.parent, first);
         copy.source = node;
         loaded.scene.nodes.push_back(std::move(copy));
     }

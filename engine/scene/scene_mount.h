@@ -13,11 +13,13 @@ namespace tyndall {
 class GltfMounts {
 public:
     /// Imports `file` (or takes it from the earlier mount) and appends its nodes below `node`, with `source` = node.
-    Result<void> mount(LoadedScene& loaded, int node, const std::filesystem::path& file, const LoadOptions& options);
+    Result<void> mount(LoadedScene& loaded, int node, const std::filesystem::path& file,
+                       const LoadOptions& options);
 
 private:
     struct Mounted {
-        std::vector<Node> nodes; // indices to meshes, lights and cameras already those of the scene; parents are not
+        std::vector<Node>
+            nodes; // indices to meshes, lights and cameras already those of the scene; parents are not
     };
     std::map<std::filesystem::path, Mounted> mounted_;
 };

@@ -40,7 +40,8 @@ private:
     Result<int> readCamera(const Json& json, const std::string& pointer, const std::string& name);
     Result<void> readMedium(const Json& json, const std::string& pointer, Node& node);
     Result<void> readGrid(const Json& json, const std::string& pointer, Node& node, Medium& medium);
-    Result<void> readParticles(const Json& json, const std::string& pointer, Node& node, Medium& medium);
+    Result<void> readParticles(const Json& json, const std::string& pointer, Node& node,
+                               Medium& medium);
     Result<void> readAnimations(const Json& json, const std::string& pointer, Node& node) const;
     Result<void> readEnvironment(const Json& json);
     Result<void> readWholeScene(const Json& json);
@@ -58,8 +59,8 @@ private:
     const LoadOptions& options_;
     std::filesystem::path file_;
     GltfMounts mounts_;
-    std::map<std::string, int> textures_;  // by file name as written
-    std::map<std::string, Medium> grids_;  // by file and grid names
+    std::map<std::string, int> textures_; // by file name as written
+    std::map<std::string, Medium> grids_; // by file and grid names
     float fraction_ = 0;
 };
 

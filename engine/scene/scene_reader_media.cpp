@@ -22,7 +22,8 @@ bool isFramePattern(const std::string& file) { return file.find('%') != std::str
 Result<std::string> frameFile(const std::string& pattern, int frame) {
     const size_t percent = pattern.find('%');
     size_t end = percent + 1, width = 0;
-    const Error wrong{fmt::format("'{}' is not a file pattern: exactly one %d, %4d or %04d is wanted", pattern)};
+    const Error wrong{
+        fmt::format("'{}' is not a file pattern: exactly one %d, %4d or %04d is wanted", pattern)};
     if (percent == std::string::npos || pattern.find('%', end) != std::string::npos) return wrong;
     const bool zeros = end < pattern.size() && pattern[end] == '0';
     for (; end < pattern.size() && pattern[end] >= '0' && pattern[end] <= '9'; ++end) {
@@ -41,25 +42,36 @@ Result<void> SceneReader::readMedium(const Json& json, const std::string& pointe
     medium.scattering = colorOr(json, "scattering", medium.scattering);
     medium.absorption = colorOr(json, "absorption", medium.absorption);
     medium.anisotropy = floatOr(json, "anisotropy", medium.anisotropy);
-    medium.phase = PhaseFunction(indexOf(kPhases, json.value("phase", std::string("henyey-greenstein"))));
+    medium.phase =
+        PhaseFunction(indexOf(kPhases, json.value("phase", std::string("henyey-greenstein"))));
     const auto emission = json.find("emission");
     if (emission != json.end() && emission->is_array()) medium.emission = vec3(toVector(*emission));
     const std::string type = json.at("type").get<std::string>();
     if (emission != json.end() && emission->is_object() && type != "grid")
-        return at(pointer + "/emission", "names a temperatureGrid, but only a medium of type grid has grids");
+        return at(pointer + "/emission",
+                  "names a temperatureGrid, but only a medium of type grid has grids");
     Result<void> read;
-    if (type == "grid") read = readGrid(json, pointer, node, medium);
-    else if (type == "particles") read = readParticles(json, pointer, node, medium);
+    if (type == "grid")
+        read = readGrid(json, pointer, node, medium);
+    else if (type == "particles")
+        read = readParticles(json, pointer, node, medium);
     else {
         const auto shape = json.find("shape");
-        if (shape == json.end()) return at(pointer, "lacks the key 'shape', which a homogeneous medium needs: everywhere, box, sphere or height");
+        if (shape == json.end())
+            return at(
+                pointer,
+                "lacks the key 'shape', which a homogeneous medium needs: everywhere, box, sphere or height");
         medium.kind = MediumKind(indexOf(kShapes, shape->get<std::string>()));
         const bool bounded = medium.kind == MediumKind::Box || medium.kind == MediumKind::Sphere;
-        if (json.contains("size") && !bounded) return at(pointer + "/size", fmt::format("does not apply to the shape {}", shape->get<std::string>()));
+        if (json.contains("size") && !bounded)
+            return at(pointer + "/size",
+                      fmt::format("does not apply to the shape {}", shape->get<std::string>()));
         if (json.contains("scaleHeight") && medium.kind != MediumKind::Height)
-            return at(pointer + "/scaleHeight", fmt::format("does not apply to the shape {}", shape->get<std::string>()));
+            return at(pointer + "/scaleHeight",
+                      fmt::format("does not apply to the shape {}", shape->get<std::string>()));
         read = onlyKeys(json, pointer, "a homogeneous medium",
-                        {"type", "shape", "size", "scaleHeight", "scattering", "absorption", "anisotropy", "phase", "emission"});
+                        {"type", "shape", "size", "scaleHeight", "scattering", "absorption",
+                         "anisotropy", "phase", "emission"});
         if (const auto size = json.find("size"); size != json.end()) medium.size = toVector(*size);
         medium.scaleHeight = json.value("scaleHeight", medium.scaleHeight);
     }
@@ -69,23 +81,31 @@ Result<void> SceneReader::readMedium(const Json& json, const std::string& pointe
     return {};
 }
 
-Result<void> SceneReader::readGrid(const Json& json, const std::string& pointer, Node& node, Medium& medium) {
+Result<void> SceneReader::readGrid(const Json& json, const std::string& pointer, Node& node,
+                                   Medium& medium) {
     medium.kind = MediumKind::Grid;
     if (auto keys = onlyKeys(json, pointer, "a medium of type grid",
-                             {"type", "file", "grid", "frames", "fps", "loop", "scattering", "absorption", "anisotropy", "phase", "emission"});
+                             {"type", "file", "grid", "frames", "fps", "loop", "scattering",
+                              "absorption", "anisotropy", "phase", "emission"});
         !keys)
         return keys;
-    if (!json.contains("file")) return at(pointer, "lacks the key 'file', which a medium of type grid needs: a .vdb or .nvdb file");
+    if (!json.contains("file"))
+        return at(pointer,
+                  "lacks the key 'file', which a medium of type grid needs: a .vdb or .nvdb file");
     medium.file = json.at("file").get<std::string>();
     medium.gridName = json.value("grid", std::string());
-    if (const auto emission = json.find("emission"); emission != json.end() && emission->is_object()) {
+    if (const auto emission = json.find("emission");
+        emission != json.end() && emission->is_object()) {
         medium.temperatureGridName = emission->at("temperatureGrid").get<std::string>();
         medium.temperatureScale = floatOr(*emission, "scale", 1.0f);
     }
     std::string file = medium.file;
     if (isFramePattern(file) || json.contains("frames")) {
         const auto frames = json.find("frames");
-        if (frames == json.end()) return at(pointer, "lacks the key 'frames', which a file name with a % pattern needs: [first, last]");
+        if (frames == json.end())
+            return at(
+                pointer,
+                "lacks the key 'frames', which a file name with a % pattern needs: [first, last]");
         GridSequence sequence;
         sequence.first = (*frames)[0].get<int>();
         sequence.last = (*frames)[1].get<int>();
@@ -119,14 +139,17 @@ Result<void> SceneReader::readGrid(const Json& json, const std::string& pointer,
     return {};
 }
 
-Result<void> SceneReader::readParticles(const Json& json, const std::string& pointer, Node& node, Medium& medium) {
+Result<void> SceneReader::readParticles(const Json& json, const std::string& pointer, Node& node,
+                                        Medium& medium) {
     medium.kind = MediumKind::Particles;
     if (auto keys = onlyKeys(json, pointer, "a medium of type particles",
-                             {"type", "file", "generate", "scattering", "absorption", "anisotropy", "phase", "emission"});
+                             {"type", "file", "generate", "scattering", "absorption", "anisotropy",
+                              "phase", "emission"});
         !keys)
         return keys;
     if (json.contains("file") == json.contains("generate"))
-        return at(pointer, "needs either a 'file' or a rule to 'generate' its particles, one of the two");
+        return at(pointer,
+                  "needs either a 'file' or a rule to 'generate' its particles, one of the two");
     medium.file = json.value("file", std::string());
     if (!medium.file.empty() && !std::filesystem::is_regular_file(resolved(medium.file)))
         return at(pointer + "/file", fmt::format("is '{}', which is not a file", medium.file));
@@ -138,7 +161,9 @@ Result<void> SceneReader::readParticles(const Json& json, const std::string& poi
         rule.radius = generate->value("radius", rule.radius);
         node.particles = rule;
     }
-    loaded_.notes.push_back(fmt::format("{}: {} describes particles, which are kept but not rendered", file_.filename().string(), pointer));
+    loaded_.notes.push_back(
+        fmt::format("{}: {} describes particles, which are kept but not rendered",
+                    file_.filename().string(), pointer));
     return {};
 }
 

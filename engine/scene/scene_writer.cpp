@@ -38,19 +38,20 @@ Json number(float value) {
     return number(shortest);
 }
 
-template <glm::length_t N, typename T>
-Json numbers(const glm::vec<N, T>& value) {
+template <glm::length_t N, typename T> Json numbers(const glm::vec<N, T>& value) {
     Json array = Json::array();
     for (glm::length_t i = 0; i < N; ++i) array.push_back(number(value[i]));
     return array;
 }
 
-template <typename T>
-void put(Json& json, const char* key, const T& value, const T& usual) {
+template <typename T> void put(Json& json, const char* key, const T& value, const T& usual) {
     if (value == usual) return;
-    if constexpr (std::is_same_v<T, float> || std::is_same_v<T, double>) json[key] = number(value);
-    else if constexpr (std::is_same_v<T, bool> || std::is_same_v<T, std::string>) json[key] = value;
-    else json[key] = numbers(value);
+    if constexpr (std::is_same_v<T, float> || std::is_same_v<T, double>)
+        json[key] = number(value);
+    else if constexpr (std::is_same_v<T, bool> || std::is_same_v<T, std::string>)
+        json[key] = value;
+    else
+        json[key] = numbers(value);
 }
 
 /// Short values on one line, long ones a line for each member.
@@ -61,9 +62,12 @@ void print(const Json& json, std::string& text, size_t indent) {
         bool inString = false;
         for (size_t i = 0; i < flat.size(); ++i) {
             text += flat[i];
-            if (flat[i] == '\\') text += flat[++i];
-            else if (flat[i] == '"') inString = !inString;
-            else if (!inString && (flat[i] == ',' || flat[i] == ':')) text += ' ';
+            if (flat[i] == '\\')
+                text += flat[++i];
+            else if (flat[i] == '"')
+                inString = !inString;
+            else if (!inString && (flat[i] == ',' || flat[i] == ':'))
+                text += ' ';
         }
         return;
     }
@@ -95,7 +99,8 @@ public:
         }
         if (!nodes.empty()) json["nodes"] = std::move(nodes);
         if (scene_.activeCamera != kNone) put(json, "camera", cameraName(), std::string());
-        if (Json written = environment(); !written.empty()) json["environment"] = std::move(written);
+        if (Json written = environment(); !written.empty())
+            json["environment"] = std::move(written);
         if (scene_.ev100 != 0) json["exposure"]["ev100"] = number(scene_.ev100);
         for (const std::string& setting : scene_.settings) {
             const size_t equals = setting.find('=');
@@ -119,7 +124,8 @@ private:
             if (scene_.nodes[i].source == kNone) {
                 if (name.empty() && needed[i]) name = fmt::format("node {}", i);
                 const std::string base = name;
-                for (int n = 2; !name.empty() && !taken.insert(name).second; ++n) name = fmt::format("{} {}", base, n);
+                for (int n = 2; !name.empty() && !taken.insert(name).second; ++n)
+                    name = fmt::format("{} {}", base, n);
             }
             names_.push_back(std::move(name));
         }
@@ -130,8 +136,12 @@ private:
     [[nodiscard]] std::string file(const std::string& name) const {
         const fs::path to = fs::absolute(folder_.empty() ? "." : folder_);
         const fs::path from = scene_.path.empty() ? to : fs::absolute(scene_.path).parent_path();
-        if (from.lexically_normal() == to.lexically_normal() || fs::path(name).is_absolute()) return name;
-        return (from / name).lexically_normal().lexically_relative(to.lexically_normal()).generic_string();
+        if (from.lexically_normal() == to.lexically_normal() || fs::path(name).is_absolute())
+            return name;
+        return (from / name)
+            .lexically_normal()
+            .lexically_relative(to.lexically_normal())
+            .generic_string();
     }
 
     Result<Json> node(size_t index) const {
@@ -141,19 +151,25 @@ private:
         if (node.parent != kNone) json["parent"] = names_[size_t(node.parent)];
         if (!node.gltf.empty()) json["gltf"] = file(node.gltf);
         if (node.primitive) {
-            json["primitive"] = {{"shape", std::string(kPrimitiveShapeNames[size_t(node.primitive->shape)])}};
+            json["primitive"] = {
+                {"shape", std::string(kPrimitiveShapeNames[size_t(node.primitive->shape)])}};
             put(json["primitive"], "size", node.primitive->size, dvec3(1));
-            if (Json written = material(scene_.materialOf(scene_.meshes[size_t(node.meshes.at(0))])); !written.empty())
+            if (Json written =
+                    material(scene_.materialOf(scene_.meshes[size_t(node.meshes.at(0))]));
+                !written.empty())
                 json["material"] = std::move(written);
         } else if (!node.meshes.empty()) {
-            return Error{fmt::format("node '{}' has a mesh that no file brought in, so that a scene file cannot hold it", node.name)};
+            return Error{fmt::format(
+                "node '{}' has a mesh that no file brought in, so that a scene file cannot hold it",
+                node.name)};
         }
         if (node.light != kNone) json["light"] = light(scene_.lights[size_t(node.light)]);
         if (node.medium != kNone) json["medium"] = medium(scene_.media[size_t(node.medium)], node);
         if (node.camera != kNone) json["camera"] = camera(scene_.cameras[size_t(node.camera)]);
         transform(json, node);
         put(json, "visible", node.visible, true);
-        if (node.animations.size() == 1) json["animate"] = animation(node.animations[0]);
+        if (node.animations.size() == 1)
+            json["animate"] = animation(node.animations[0]);
         else
             for (const Animation& one : node.animations) json["animate"].push_back(animation(one));
         return json;
@@ -161,7 +177,8 @@ private:
 
     static void transform(Json& json, const Node& node) {
         if (node.matrix) {
-            for (int i = 0; i < 16; ++i) json["matrix"].push_back(number((*node.matrix)[i / 4][i % 4]));
+            for (int i = 0; i < 16; ++i)
+                json["matrix"].push_back(number((*node.matrix)[i / 4][i % 4]));
             return;
         }
         put(json, "translation", node.translation, dvec3(0));
@@ -173,25 +190,29 @@ private:
     [[nodiscard]] Json material(const Material& material) const {
         Json json = Json::object();
         if (material.baseColor != vec4(1))
-            json["baseColor"] = material.baseColor.w == 1 ? numbers(vec3(material.baseColor)) : numbers(material.baseColor);
+            json["baseColor"] = material.baseColor.w == 1 ? numbers(vec3(material.baseColor))
+                                                          : numbers(material.baseColor);
         put(json, "metallic", material.metallic, 0.0f);
         put(json, "roughness", material.roughness, 1.0f);
         put(json, "specular", material.specular, 1.0f);
         put(json, "emissive", material.emissive, vec3(0));
-        put(json, "alphaMode", std::string(kAlphaModes[size_t(material.alphaMode)]), std::string("OPAQUE"));
+        put(json, "alphaMode", std::string(kAlphaModes[size_t(material.alphaMode)]),
+            std::string("OPAQUE"));
         put(json, "alphaCutoff", material.alphaCutoff, 0.5f);
         put(json, "doubleSided", material.doubleSided, false);
         put(json, "unlit", material.unlit, false);
         put(json, "normalScale", material.normalScale, 1.0f);
         put(json, "occlusionStrength", material.occlusionStrength, 1.0f);
-        const std::pair<const char*, const TextureRef*> textures[] = {{"baseColorTexture", &material.baseColorTexture},
-                                                                      {"metallicRoughnessTexture", &material.metallicRoughnessTexture},
-                                                                      {"normalTexture", &material.normalTexture},
-                                                                      {"occlusionTexture", &material.occlusionTexture},
-                                                                      {"emissiveTexture", &material.emissiveTexture}};
+        const std::pair<const char*, const TextureRef*> textures[] = {
+            {"baseColorTexture", &material.baseColorTexture},
+            {"metallicRoughnessTexture", &material.metallicRoughnessTexture},
+            {"normalTexture", &material.normalTexture},
+            {"occlusionTexture", &material.occlusionTexture},
+            {"emissiveTexture", &material.emissiveTexture}};
         for (const auto& [key, reference] : textures)
             if (reference->texture != kNone)
-                json[key] = file(scene_.images[size_t(scene_.textures[size_t(reference->texture)].image)].file);
+                json[key] = file(
+                    scene_.images[size_t(scene_.textures[size_t(reference->texture)].image)].file);
         return json;
     }
 
@@ -205,7 +226,8 @@ private:
             json["intensity"] = number(light.intensity);
             put(json, "radius", light.radius, 0.0f);
         }
-        if (light.type == LightType::Point || light.type == LightType::Spot) put(json, "range", light.range, 0.0f);
+        if (light.type == LightType::Point || light.type == LightType::Spot)
+            put(json, "range", light.range, 0.0f);
         if (light.type == LightType::Spot) {
             put(json, "innerConeAngle", light.innerConeAngle, 0.0f);
             put(json, "outerConeAngle", light.outerConeAngle, float(kPi / 4));
@@ -218,26 +240,33 @@ private:
         const Camera usual;
         const bool perspective = camera.type == CameraType::Perspective;
         Json json = {{"type", perspective ? "perspective" : "orthographic"}};
-        if (perspective) put(json, "yfov", camera.yfov, usual.yfov);
-        else put(json, "ymag", camera.ymag, usual.ymag);
+        if (perspective)
+            put(json, "yfov", camera.yfov, usual.yfov);
+        else
+            put(json, "ymag", camera.ymag, usual.ymag);
         put(json, "znear", camera.znear, usual.znear);
         return json;
     }
 
     [[nodiscard]] Json medium(const Medium& medium, const Node& node) const {
         Json json;
-        if (medium.kind == MediumKind::Grid) gridSource(json, medium, node);
-        else if (medium.kind == MediumKind::Particles) particleSource(json, medium, node);
+        if (medium.kind == MediumKind::Grid)
+            gridSource(json, medium, node);
+        else if (medium.kind == MediumKind::Particles)
+            particleSource(json, medium, node);
         else {
             json["type"] = "homogeneous";
             json["shape"] = std::string(kShapes[size_t(medium.kind)]);
-            if (medium.kind == MediumKind::Box || medium.kind == MediumKind::Sphere) put(json, "size", medium.size, dvec3(1));
-            if (medium.kind == MediumKind::Height) put(json, "scaleHeight", medium.scaleHeight, 1.0);
+            if (medium.kind == MediumKind::Box || medium.kind == MediumKind::Sphere)
+                put(json, "size", medium.size, dvec3(1));
+            if (medium.kind == MediumKind::Height)
+                put(json, "scaleHeight", medium.scaleHeight, 1.0);
         }
         put(json, "scattering", medium.scattering, vec3(0));
         put(json, "absorption", medium.absorption, vec3(0));
         put(json, "anisotropy", medium.anisotropy, 0.0f);
-        put(json, "phase", std::string(kPhases[size_t(medium.phase)]), std::string("henyey-greenstein"));
+        put(json, "phase", std::string(kPhases[size_t(medium.phase)]),
+            std::string("henyey-greenstein"));
         if (!medium.temperatureGridName.empty()) {
             json["emission"] = {{"temperatureGrid", medium.temperatureGridName}};
             put(json["emission"], "scale", medium.temperatureScale, 1.0f);
@@ -261,7 +290,9 @@ private:
         json["type"] = "particles";
         if (!medium.file.empty()) json["file"] = file(medium.file);
         if (!node.particles) return;
-        json["generate"] = {{"kind", node.particles->kind}, {"count", node.particles->count}, {"seed", node.particles->seed}};
+        json["generate"] = {{"kind", node.particles->kind},
+                            {"count", node.particles->count},
+                            {"seed", node.particles->seed}};
         put(json["generate"], "radius", node.particles->radius, 1.0);
     }
 
@@ -269,7 +300,8 @@ private:
         Json json = {{"property", animation.property}};
         for (const double time : animation.times) json["times"].push_back(number(time));
         for (const double value : animation.values) json["values"].push_back(number(value));
-        put(json, "interpolation", std::string(kInterpolations[size_t(animation.interpolation)]), std::string("LINEAR"));
+        put(json, "interpolation", std::string(kInterpolations[size_t(animation.interpolation)]),
+            std::string("LINEAR"));
         return json;
     }
 
@@ -304,7 +336,9 @@ Result<std::string> sceneFileText(const Scene& scene, const fs::path& folder) {
     try {
         return SceneWriter(scene, folder).write();
     } catch (const Json::exception&) {
-        return Error{fmt::format("scene '{}' holds a name that is not UTF-8, so that a scene file cannot hold it", scene.path.string())};
+        return Error{fmt::format(
+            "scene '{}' holds a name that is not UTF-8, so that a scene file cannot hold it",
+            scene.path.string())};
     }
 }
 

@@ -29,16 +29,21 @@ bool emits(const Scene& scene) {
         if (scene.materialOf(mesh).emissive != vec3(0)) return true;
     for (const Medium& medium : scene.media)
         if (medium.emission != vec3(0) || medium.temperatureScale > 0) return true;
-    return std::any_of(scene.nodes.begin(), scene.nodes.end(), [](const Node& node) { return node.light != kNone; });
+    return std::any_of(scene.nodes.begin(), scene.nodes.end(),
+                       [](const Node& node) { return node.light != kNone; });
 }
 
-double luminance(const vec3& color) { return 0.2126 * double(color.x) + 0.7152 * double(color.y) + 0.0722 * double(color.z); }
+double luminance(const vec3& color) {
+    return 0.2126 * double(color.x) + 0.7152 * double(color.y) + 0.0722 * double(color.z);
+}
 
 /// The lux that the light would put on a facing surface in the middle of the scene, in vacuum, unshadowed.
 double illuminance(const Light& light, double distance) {
     const double squared = distance * distance;
-    if (light.type == LightType::Directional) return luminance(light.color) * double(light.intensity);
-    if (light.type == LightType::Rect) return luminance(light.radiance) * double(light.size.x) * double(light.size.y) / squared;
+    if (light.type == LightType::Directional)
+        return luminance(light.color) * double(light.intensity);
+    if (light.type == LightType::Rect)
+        return luminance(light.radiance) * double(light.size.x) * double(light.size.y) / squared;
     return luminance(light.color) * double(light.intensity) / squared;
 }
 
@@ -66,7 +71,8 @@ void supplyCamera(LoadedScene& loaded) {
     if (scene.activeCamera != kNone) return;
     Bounds bounds = scene.worldBounds();
     if (bounds.empty()) bounds.include(dvec3(0));
-    const double radius = std::max(0.5 * glm::length(bounds.extent()), 1e-6 * (1 + glm::length(bounds.centre())));
+    const double radius =
+        std::max(0.5 * glm::length(bounds.extent()), 1e-6 * (1 + glm::length(bounds.centre())));
     const dvec3 forward = glm::normalize(dvec3(-0.45, -0.3, -1));
     // The ball around the bounds fits between the upper and the lower edge of the picture.
     const double distance = 1.02 * radius / std::sin(0.5 * kFieldOfView);
@@ -99,7 +105,8 @@ void supplyLight(LoadedScene& loaded) {
     scene.lights.push_back(std::move(sun));
     scene.nodes.push_back(std::move(node));
     scene.environment.radiance = vec3(float(kSkyNits));
-    loaded.supplied.push_back(fmt::format("a sun of {} lux and a sky of {} nits", kSunLux, kSkyNits));
+    loaded.supplied.push_back(
+        fmt::format("a sun of {} lux and a sky of {} nits", kSunLux, kSkyNits));
 }
 
 void supplyExposure(LoadedScene& loaded) {
@@ -108,7 +115,8 @@ void supplyExposure(LoadedScene& loaded) {
     const dvec3 centre = bounds.empty() ? dvec3(0) : bounds.centre();
     const double radius = bounds.empty() ? 1 : std::max(0.5 * glm::length(bounds.extent()), 1e-9);
     const std::vector<dmat4> world = scene.worldTransforms();
-    double lux = scene.environment.image ? kPi * double(scene.environment.intensity) * 0.5 : kPi * luminance(scene.environment.radiance);
+    double lux = scene.environment.image ? kPi * double(scene.environment.intensity) * 0.5
+                                         : kPi * luminance(scene.environment.radiance);
     for (size_t i = 0; i < scene.nodes.size(); ++i) {
         if (scene.nodes[i].light == kNone) continue;
         // A light inside the scene lights what is near it; half the scene's size away is typical.
@@ -116,11 +124,13 @@ void supplyExposure(LoadedScene& loaded) {
         lux += illuminance(scene.lights[size_t(scene.nodes[i].light)], distance);
     }
     double brightest = 0;
-    for (const Mesh& mesh : scene.meshes) brightest = std::max(brightest, luminance(scene.materialOf(mesh).emissive));
+    for (const Mesh& mesh : scene.meshes)
+        brightest = std::max(brightest, luminance(scene.materialOf(mesh).emissive));
     lux += 0.1 * kPi * brightest; // an emitter that fills a tenth of the view
     if (!(lux > 0) || !std::isfinite(lux)) return;
     scene.ev100 = float(std::round(2 * std::clamp(std::log2(lux / 2.5), -20.0, 40.0)) / 2);
-    loaded.supplied.push_back(fmt::format("an exposure of EV100 {} for the {:.3g} lux that arrive", double(scene.ev100), lux));
+    loaded.supplied.push_back(fmt::format("an exposure of EV100 {} for the {:.3g} lux that arrive",
+                                          double(scene.ev100), lux));
 }
 
 Result<void> supplyMedium(LoadedScene& loaded, const std::filesystem::path& file) {
@@ -132,14 +142,17 @@ Result<void> supplyMedium(LoadedScene& loaded, const std::filesystem::path& file
     medium.file = file.filename().string();
     medium.gridName = grids->densityName;
     medium.density = grids->density;
-    const dvec3 extent = medium.density->indexBounds().transformed(medium.density->worldFromIndex).extent();
-    const double largest = std::max({extent.x, extent.y, extent.z}), mean = meanDensity(*medium.density);
+    const dvec3 extent =
+        medium.density->indexBounds().transformed(medium.density->worldFromIndex).extent();
+    const double largest = std::max({extent.x, extent.y, extent.z}),
+                 mean = meanDensity(*medium.density);
     if (largest > 0 && mean > 0 && std::isfinite(largest)) {
         const double extinction = std::clamp(kOpticalDepth / (largest * mean), 1e-30, 1e30);
         medium.scattering = vec3(float(kAlbedo * extinction));
         medium.absorption = vec3(float((1 - kAlbedo) * extinction));
-        loaded.supplied.push_back(fmt::format("a medium for grid '{}': extinction {:.3g} per metre and unit of density, albedo {}",
-                                              grids->densityName, extinction, kAlbedo));
+        loaded.supplied.push_back(fmt::format(
+            "a medium for grid '{}': extinction {:.3g} per metre and unit of density, albedo {}",
+            grids->densityName, extinction, kAlbedo));
     }
     for (std::string& note : grids->notes) loaded.notes.push_back(std::move(note));
     Node node;

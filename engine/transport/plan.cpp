@@ -46,7 +46,8 @@ Result<void> assign(FramePlan& plan, std::string_view list, std::span<const Tech
         list.remove_prefix(std::min(comma + 1, list.size()));
         const size_t equals = item.find('=');
         if (equals == std::string_view::npos)
-            return Error{"'" + std::string(item) + "' is not an assignment: write TERM=TECHNIQUE, as in LVVE=octaves"};
+            return Error{"'" + std::string(item) +
+                         "' is not an assignment: write TERM=TECHNIQUE, as in LVVE=octaves"};
         const Result<TermSet> term = parseTerms(item.substr(0, equals));
         if (!term) return term.error();
         const std::string_view name = item.substr(equals + 1);
@@ -54,11 +55,12 @@ Result<void> assign(FramePlan& plan, std::string_view list, std::span<const Tech
         if (owner == kNobody) return unknownTechnique(name, techniques);
         const TermSet claims = claimsOf(owner, techniques);
         if (*term & ~claims)
-            return Error{"technique '" + std::string(name) + "' does not compute " + termNames(*term & ~claims) +
-                         ": it claims " + termNames(claims)};
+            return Error{"technique '" + std::string(name) + "' does not compute " +
+                         termNames(*term & ~claims) + ": it claims " + termNames(claims)};
         for (uint32_t i = 0; i < kTermCount; ++i)
             if ((*term & bit(Term(i))) && plan.owner[i] != kNobody)
-                return Error{"term " + std::string(termName(Term(i))) + " is given to two techniques: each term is computed once"};
+                return Error{"term " + std::string(termName(Term(i))) +
+                             " is given to two techniques: each term is computed once"};
         give(plan, *term, owner);
     }
     return {};
@@ -70,7 +72,10 @@ int chooseAutomatically(TermSet indirect, std::span<const Technique> techniques)
     int most = 0;
     for (size_t i = 0; i < techniques.size(); ++i) {
         const int count = __builtin_popcount(techniques[i].claims & indirect);
-        if (count > most) { most = count; best = int(i); }
+        if (count > most) {
+            most = count;
+            best = int(i);
+        }
     }
     return best;
 }
@@ -80,12 +85,14 @@ std::string chooseAndExplain(FramePlan& plan, std::span<const Technique> techniq
     const int choice = chooseAutomatically(indirect, techniques);
     if (choice == kNobody) {
         plan.technique = "none";
-        return indirect == 0 ? "auto: the scene has direct light alone" : "auto: no technique here computes " + termNames(indirect);
+        return indirect == 0 ? "auto: the scene has direct light alone"
+                             : "auto: no technique here computes " + termNames(indirect);
     }
     const Technique& chosen = techniques[size_t(choice)];
     give(plan, chosen.claims & plan.wanted, choice);
     plan.technique = chosen.name;
-    return "auto: '" + chosen.name + "' claims " + termNames(chosen.claims & indirect) + " of the indirect terms that this scene has";
+    return "auto: '" + chosen.name + "' claims " + termNames(chosen.claims & indirect) +
+           " of the indirect terms that this scene has";
 }
 
 } // namespace
@@ -102,11 +109,13 @@ TermSet possibleTerms(const SceneTraits& traits) {
     TermSet set = bit(Term::LE);
     if (traits.surfaces) set |= terms(Term::LSE, Term::LSSE, Term::LXSSE);
     if (traits.scatteringMedia) set |= terms(Term::LVE, Term::LVVE, Term::LXVVE);
-    if (traits.surfaces && traits.scatteringMedia) set |= terms(Term::LVSE, Term::LSVE, Term::LXVSE, Term::LXSVE);
+    if (traits.surfaces && traits.scatteringMedia)
+        set |= terms(Term::LVSE, Term::LSVE, Term::LXVSE, Term::LXSVE);
     return set;
 }
 
-Result<FramePlan> makePlan(std::string_view gi, TermSet wanted, std::span<const Technique> techniques, const SceneTraits& traits) {
+Result<FramePlan> makePlan(std::string_view gi, TermSet wanted,
+                           std::span<const Technique> techniques, const SceneTraits& traits) {
     FramePlan plan;
     plan.owner.fill(kNobody);
     plan.wanted = wanted;

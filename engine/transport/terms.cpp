@@ -7,8 +7,8 @@
 
 namespace tyndall {
 namespace {
-constexpr std::array<std::string_view, kTermCount> kNames = {"LE", "LSE", "LVE", "LSSE", "LVSE", "LSVE",
-                                                             "LVVE", "LXSSE", "LXVSE", "LXSVE", "LXVVE"};
+constexpr std::array<std::string_view, kTermCount> kNames = {
+    "LE", "LSE", "LVE", "LSSE", "LVSE", "LSVE", "LVVE", "LXSSE", "LXVSE", "LXSVE", "LXVVE"};
 }
 
 std::string_view termName(Term term) { return kNames[uint32_t(term)]; }
@@ -26,8 +26,14 @@ Result<TermSet> parseTerms(std::string_view list) {
         const size_t comma = std::min(list.find(','), list.size());
         const std::string_view word = list.substr(0, comma);
         list.remove_prefix(std::min(comma + 1, list.size()));
-        if (word == "all") { set |= kAllTerms; continue; }
-        if (word == "direct") { set |= kDirectTerms; continue; }
+        if (word == "all") {
+            set |= kAllTerms;
+            continue;
+        }
+        if (word == "direct") {
+            set |= kDirectTerms;
+            continue;
+        }
         uint32_t index = 0;
         while (index < kTermCount && kNames[index] != word) ++index;
         if (index == kTermCount) {

@@ -14,9 +14,11 @@ struct Settings {
 };
 
 const SettingDesc kSettings[] = {
-    TYNDALL_BOOL(Settings, enabled, "tint.enabled", "Tint", false, "Multiply the picture by a colour."),
+    TYNDALL_BOOL(Settings, enabled, "tint.enabled", "Tint", false,
+                 "Multiply the picture by a colour."),
     TYNDALL_FLOAT(Settings, red, "tint.red", "Red", "", 0, 4, 1, "Factor of the red channel."),
-    TYNDALL_FLOAT(Settings, green, "tint.green", "Green", "", 0, 4, 1, "Factor of the green channel."),
+    TYNDALL_FLOAT(Settings, green, "tint.green", "Green", "", 0, 4, 1,
+                  "Factor of the green channel."),
     TYNDALL_FLOAT(Settings, blue, "tint.blue", "Blue", "", 0, 4, 1, "Factor of the blue channel."),
 };
 
@@ -35,11 +37,13 @@ void main() {
 class Tint final : public plugin::Plugin {
 public:
     const plugin::PluginInfo& info() const override {
-        static constexpr plugin::PluginInfo kInfo{"example_tint", "0.1.0", "Multiplies the picture by a colour.", nullptr, 0};
+        static constexpr plugin::PluginInfo kInfo{
+            "example_tint", "0.1.0", "Multiplies the picture by a colour.", nullptr, 0};
         return kInfo;
     }
     uint32_t settingsGroupCount() const override { return 1; }
-    void settingsGroup(uint32_t, const SettingDesc** fields, uint32_t* count, void** values) override {
+    void settingsGroup(uint32_t, const SettingDesc** fields, uint32_t* count,
+                       void** values) override {
         *fields = kSettings;
         *count = uint32_t(std::size(kSettings));
         *values = &settings_;
@@ -51,11 +55,18 @@ public:
     }
     void sceneChanged(const plugin::SceneChange&) override {}
 
-    plugin::FrameOutputs addPasses(fg::FrameGraph&, uint32_t, const plugin::FrameInputs&) override { return {}; }
+    plugin::FrameOutputs addPasses(fg::FrameGraph&, uint32_t, const plugin::FrameInputs&) override {
+        return {};
+    }
 
-    fg::TextureHandle addPostPasses(fg::FrameGraph& graph, const plugin::FrameInputs&, fg::TextureHandle color) override {
-        struct Data { fg::TextureHandle image, tinted; vec4 tint; };
-        const Data& pass = graph.addPass<Data>("example_tint.tint",
+    fg::TextureHandle addPostPasses(fg::FrameGraph& graph, const plugin::FrameInputs&,
+                                    fg::TextureHandle color) override {
+        struct Data {
+            fg::TextureHandle image, tinted;
+            vec4 tint;
+        };
+        const Data& pass = graph.addPass<Data>(
+            "example_tint.tint",
             [&](fg::Builder& builder, Data& data) {
                 if (!settings_.enabled) return builder.skip("setting tint.enabled is off");
                 data.image = builder.read(color);
@@ -63,7 +74,11 @@ public:
                 data.tint = vec4(settings_.red, settings_.green, settings_.blue, 1);
             },
             [](const Data& data, fg::PassContext& context) {
-                context.compute("example_tint/tint.comp").bind("image", data.image).bind("tinted", data.tinted).params(data.tint).dispatchOver(data.tinted);
+                context.compute("example_tint/tint.comp")
+                    .bind("image", data.image)
+                    .bind("tinted", data.tinted)
+                    .params(data.tint)
+                    .dispatchOver(data.tinted);
             });
         return settings_.enabled ? pass.tinted : color;
     }
@@ -76,4 +91,5 @@ private:
 } // namespace
 } // namespace tyndall::example_tint
 
-TYNDALL_PLUGIN(example_tint, [] () -> tyndall::plugin::Plugin* { return new tyndall::example_tint::Tint; })
+TYNDALL_PLUGIN(example_tint,
+               []() -> tyndall::plugin::Plugin* { return new tyndall::example_tint::Tint; })

@@ -18,6 +18,11 @@
 #include "lighting/light.glsl"
 #include "shared/shadow.h"
 
+// A shader that takes many lookups defines SOFT_SHADOWS as 0 where the frame has none: LightResources.softShadows.
+#ifndef SOFT_SHADOWS
+#define SOFT_SHADOWS 1
+#endif
+
 layout(std430) readonly buffer ShadowViews { ShadowView shadowViews[]; };
 uniform sampler2DArray shadowAtlas;
 
@@ -180,6 +185,7 @@ float shadowSlope(uint light, vec3 position, vec3 normal) {
     return sqrt(max(0.0, 1.0 - cosine * cosine)) / cosine;
 }
 
+#if SOFT_SHADOWS
 /// One loop over all lookups, and little code in it: loops that are unrolled, and calls that are repeated, take software drivers
 /// seconds to compile.
 float shadowSoft(uint light, ShadowPoint centre, vec3 position, vec3 normal, bool hasPlane, int taps, int searchTaps, vec2 u) {
@@ -222,6 +228,7 @@ float shadowSoft(uint light, ShadowPoint centre, vec3 position, vec3 normal, boo
     }
     return lit / float(taps);
 }
+#endif
 
 /// 0..1: the part of `light` that `position` (render space) sees past opaque surfaces. `offsetNormal`: the geometric normal of
 /// the surface that the point lies on, unit, either side; vec3(0) for points in media. `u` (0..1) turns the filter.
@@ -240,7 +247,9 @@ float shadowVisibility(uint light, vec3 position, vec3 offsetNormal, vec2 u) {
         searchTaps = (searchTaps + 3) / 4;
         taps = (taps + 3) / 4;
     }
+#if SOFT_SHADOWS
     if (searchTaps > 0) return shadowSoft(light, point, position, offsetNormal, onSurface, taps, searchTaps, u);
+#endif
     if (!onSurface) return shadowBilinear(point, point.texel, -kMediumBiasTexels * point.oneTexel);
     float bias = shadowSurfaceBias(point);
     float lit = 0.0;

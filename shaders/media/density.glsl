@@ -25,14 +25,16 @@ uniform sampler3D mediumAtlas;
 uniform sampler3D lightOpticalDepth;
 
 // A shader that is run for many rays defines MEDIA_KINDS (kMediaShapes and so on): code for what a frame does not have costs
-// registers, even where it is never reached. Without it, everything is there.
+// registers, even where it is never reached, and software drivers run both sides of every branch. Without it, everything is there.
 #ifdef MEDIA_KINDS
 const bool kHasShapes = (uint(MEDIA_KINDS) & kMediaShapes) != 0u;
 const bool kHasGrids = (uint(MEDIA_KINDS) & kMediaGrids) != 0u;
 const bool kOneMedium = (uint(MEDIA_KINDS) & kMediaSingle) != 0u;
+const bool kLightVolumes = (uint(MEDIA_KINDS) & kMediaLightVolumes) != 0u;
 bool mediaExact() { return (uint(MEDIA_KINDS) & kMediaExactGrids) != 0u; }
 #else
 const bool kOneMedium = false;
+const bool kLightVolumes = false;
 const bool kHasShapes = true;
 const bool kHasGrids = true;
 bool mediaExact() { return (mediaHeader.flags & kMediaExact) != 0u; }

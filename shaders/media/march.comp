@@ -3,8 +3,10 @@
 //
 // With many lights, each group of 8×8 rays first makes a list of those that reach any of its rays: the same for all, and in
 // order, so that the sums are the same as without lists.
+//
+// IN_SCATTER: 0: no light is gathered; 1: of few lights; 2: of many, from lists.
 #define MARCH_PHASE_GROUPS PHASE_GROUPS
-#if IN_SCATTER
+#if IN_SCATTER == 2
 #define MARCH_TILE_LIGHTS
 #endif
 #include "media/march.glsl"
@@ -22,23 +24,19 @@ layout(rgba32f) uniform writeonly image2D emission;
 #endif
 
 // Known when compiling: what is not wanted costs nothing.
-const uint kWanted = (IN_SCATTER == 1 ? kMarchInScatter : 0u) | (EMISSION == 1 ? kMarchEmission : 0u);
+const uint kWanted = (IN_SCATTER > 0 ? kMarchInScatter : 0u) | (EMISSION == 1 ? kMarchEmission : 0u);
 
 /// The ray of one of the pixels that a marched ray stands for: its depth is that pixel's own, not a mixture.
 ivec2 fullPixel(ivec2 pixel) {
     return min(pixel * int(params.factor) + int(params.factor) / 2, textureSize(depth, 0) - 1);
 }
 
-#if IN_SCATTER
-const uint kFewLights = 16u;    // up to so many, a list costs more than it saves
+#if IN_SCATTER == 2
 const uint kListedLights = 1024u; // lights after these are in no list: they always count
 shared uint tileMask[kListedLights / 32u];
 shared uint tileList[kListedLights];
 shared uint tileCount;
 shared uint tileDistance; // bits of the farthest end of a ray: positive floats are in the order of their bits
-
-/// All but those that stand for the environment.
-uint localLights() { return params.lightCount - min(mediaHeader.environmentLights, params.lightCount); }
 
 /// Can the light reach a ray of the group? Its rays lie in a cone around `axis` whose apex is `spread` wide.
 bool reachesTile(uint light, Ray axis, float spread, float halfAngle, float farthest) {
@@ -69,9 +67,9 @@ void makeTileList(float distance) {
         spread = max(spread, length(edge.origin - axis.origin));
         halfAngle = max(halfAngle, acos(clamp(dot(edge.direction, axis.direction), -1.0, 1.0)));
     }
-    uint listed = min(localLights(), kListedLights);
+    uint listed = min(sceneLights(params.lightCount), kListedLights);
     for (uint light = self; light < listed; light += 64u)
-        if (reachesTile(light, axis, spread, halfAngle, uintBitsToFloat(tileDistance))) atomicOr(tileMask[light >> 5u], 1u << (light & 31u));
+        if (reachesTile(sceneLight(light), axis, spread, halfAngle, uintBitsToFloat(tileDistance))) atomicOr(tileMask[light >> 5u], 1u << (light & 31u));
     barrier();
     if (self == 0u) {
         tileCount = 0u;
@@ -81,16 +79,8 @@ void makeTileList(float distance) {
     barrier();
 }
 
-bool fewLights() { return localLights() <= kFewLights; }
-
-uint marchLightSlots(uint lightCount) {
-    if (fewLights()) return lightCount;
-    return tileCount + (lightCount > kListedLights ? lightCount - kListedLights : 0u);
-}
-uint marchLight(uint slot) {
-    if (fewLights()) return slot;
-    return slot < tileCount ? tileList[slot] : kListedLights + slot - tileCount;
-}
+uint marchLightSlots(uint lightCount) { return tileCount + max(sceneLights(lightCount), kListedLights) - kListedLights; }
+uint marchLight(uint slot) { return sceneLight(slot < tileCount ? tileList[slot] : kListedLights + slot - tileCount); }
 #endif
 
 void main() {
@@ -98,8 +88,8 @@ void main() {
     ivec2 full = fullPixel(pixel);
     vec2 centre = vec2(full) + 0.5;
     float distance = rayDistanceFromDepth(centre, texelFetch(depth, full, 0).r);
-#if IN_SCATTER
-    if (!fewLights()) makeTileList(distance);
+#if IN_SCATTER == 2
+    makeTileList(distance);
 #endif
     if (any(greaterThanEqual(pixel, imageSize(transmittance)))) return;
     MarchResult march = marchMedia(cameraRay(centre), distance, kWanted, params.lightCount, uvec2(full));

@@ -179,10 +179,15 @@ vec3 segmentLight(uint light, Ray ray, Segment s, vec3 noise) {
     return points == 0 ? sum : sum / float(abs(points));
 }
 
+/// How many of `lightCount` lights do not stand for the environment, and the number of the i-th of them.
+uint sceneLights(uint lightCount) { return lightCount - min(mediaHeader.environmentLights, lightCount); }
+uint sceneLight(uint i) { return i < mediaHeader.environmentFirst ? i : i + mediaHeader.environmentLights; }
+
 #ifndef MARCH_TILE_LIGHTS
-/// Those of the first `lightCount` lights that can reach the ray: here all of them. A shader with a list of its own defines MARCH_TILE_LIGHTS and both functions.
-uint marchLightSlots(uint lightCount) { return lightCount; }
-uint marchLight(uint slot) { return slot; }
+/// Lights of the scene itself that can reach the ray: here all of them. A shader with a list of its own defines
+/// MARCH_TILE_LIGHTS and both functions.
+uint marchLightSlots(uint lightCount) { return sceneLights(lightCount); }
+uint marchLight(uint slot) { return sceneLight(slot); }
 #else
 uint marchLightSlots(uint lightCount);
 uint marchLight(uint slot);
@@ -192,15 +197,14 @@ uint marchLight(uint slot);
 /// next segment others. They are about equally strong, and a ray has many segments.
 vec3 segmentInScatter(Ray ray, Segment s, uint lightCount, vec3 noise, uint turn) {
     vec3 sum = vec3(0.0);
-    uint listed = lightCount - min(mediaHeader.environmentLights, lightCount);
-    uint slots = marchLightSlots(listed);
+    uint slots = marchLightSlots(lightCount);
     uint stride = max(mediaHeader.environmentStride, 1u);
-    uint light = listed + turn % stride;
-    uint chosen = light < lightCount ? (lightCount - light + stride - 1u) / stride : 0u;
+    uint skipped = turn % stride;
+    uint chosen = (max(min(mediaHeader.environmentLights, lightCount), skipped) - skipped + stride - 1u) / stride;
     for (uint slot = 0u; slot < slots + chosen; ++slot) {
         bool fromEnvironment = slot >= slots;
-        uint lamp = fromEnvironment ? light + (slot - slots) * stride : marchLight(slot);
-        vec3 arriving = segmentLight(lamp, ray, s, noise);
+        uint light = fromEnvironment ? mediaHeader.environmentFirst + skipped + (slot - slots) * stride : marchLight(slot);
+        vec3 arriving = segmentLight(light, ray, s, noise);
         sum += fromEnvironment ? arriving * float(stride) : arriving;
     }
     return sum;

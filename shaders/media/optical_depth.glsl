@@ -175,10 +175,10 @@ vec3 volumeOpticalDepth(OpticalDepthView v, vec3 position) {
 vec3 opticalDepthToLight(uint light, vec3 position, vec3 direction, float distance) {
     vec3 depth = analyticOpticalDepth(position, direction, 0.0, distance);
     if (firstGrid() == mediumCount()) return depth;
-    if ((mediaHeader.flags & kMediaLightDepthVolume) == 0u) return depth + gridOpticalDepth(position, direction, 0.0, distance);
-    uint kind = opticalDepthViews[light].kind;
+    bool volumes = kLightVolumes || (mediaHeader.flags & kMediaLightDepthVolume) != 0u;
+    uint kind = volumes ? opticalDepthViews[light].kind : kDepthViewMarch;
     if (kind == kDepthViewNone) return depth;
-    if (kind == kDepthViewMarch) return depth + gridOpticalDepth(position, direction, 0.0, distance);
+    if (!kLightVolumes && kind == kDepthViewMarch) return depth + gridOpticalDepth(position, direction, 0.0, distance);
     return depth + volumeOpticalDepth(opticalDepthViews[light], position);
 }
 

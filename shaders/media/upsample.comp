@@ -33,7 +33,7 @@ float likeness(float distance, vec3 through, float coarseDistance, vec3 coarseTh
 }
 
 // Known when compiling: what is not wanted costs nothing.
-const uint kWanted = (IN_SCATTER == 1 ? kMarchInScatter : 0u) | (EMISSION == 1 ? kMarchEmission : 0u);
+const uint kWanted = (IN_SCATTER > 0 ? kMarchInScatter : 0u) | (EMISSION == 1 ? kMarchEmission : 0u);
 
 void main() {
     ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);

@@ -24,6 +24,7 @@ TYNDALL_CONST uint kMediaShapes = 1u; // some without a grid
 TYNDALL_CONST uint kMediaGrids = 2u;  // some with one
 TYNDALL_CONST uint kMediaExactGrids = 4u; // grids are integrated cell by cell (kMediaExact is set)
 TYNDALL_CONST uint kMediaSingle = 8u;     // there is one medium
+TYNDALL_CONST uint kMediaLightVolumes = 16u; // every light that shines through grids has a volume of their optical depth
 
 // MediaHeader.flags
 TYNDALL_CONST uint kMediaExact = 1u;            // integrate grids cell by cell instead of by steps
@@ -38,11 +39,10 @@ struct MediaHeader {
     float stepVoxels;        // length of a step through a grid, in voxels
     uint analyticSteps;      // steps through a medium without a grid
     float minTransmittance;  // where a march ends
-    uint environmentLights;  // so many of the lights stand for the environment: the last ones
+    uint environmentFirst;   // number of the first of the lights that stand for the environment; they are neighbours
+    uint environmentLights;  // how many they are
     uint environmentStride;  // a segment of a march gathers from every so many-th of them; 0 as 1
     uint padding0;
-    uint padding1;
-    uint padding2;
 };
 
 struct MediumData {

@@ -36,7 +36,8 @@ TEST_P(BufferTest, WritesCopiesAndClearsInPlace) {
     const Buffer source("source", std::as_bytes(std::span(two)));
     buffer.copyFrom(source.id(), 4, 28, 4);
     const uint32_t old = 0xdeadbeefu;
-    EXPECT_EQ(buffer.readAll<uint32_t>(), (std::vector<uint32_t>{old, old, 1, 2, old, old, old, 2}));
+    EXPECT_EQ(buffer.readAll<uint32_t>(),
+              (std::vector<uint32_t>{old, old, 1, 2, old, old, old, 2}));
     uint32_t part[2] = {};
     buffer.read(12, part, sizeof part);
     EXPECT_EQ(part[0], 2u);
@@ -75,7 +76,8 @@ TEST_P(BufferTest, TheRingNeverOverwritesWhatTheGpuHasYetToRead) {
             const std::vector<uint32_t> values = counting(1 + random() % kMostWords, next);
             next += uint32_t(values.size());
             const uint64_t alignment = uint64_t(1) << (2 + random() % 7);
-            const UploadRing::Slice piece = ring.upload(values.data(), values.size() * 4, alignment);
+            const UploadRing::Slice piece =
+                ring.upload(values.data(), values.size() * 4, alignment);
             EXPECT_EQ(piece.offset % alignment, 0u);
             const size_t at = (size_t(frame) * kSlices + slice) * kMostWords;
             result.copyFrom(piece.buffer, piece.offset, at * 4, values.size() * 4);
@@ -96,7 +98,8 @@ TEST_P(BufferTest, TheRingGrowsForAFrameThatDoesNotFitAndKeepsWhatWasThere) {
     EXPECT_GE(ring.capacity(), 4000u);
     EXPECT_EQ(ring.statistics().grown, 1u);
     Buffer result("result", 4128);
-    result.copyFrom(first.buffer, first.offset, 0, 128); // the old memory lives as long as the frame
+    result.copyFrom(first.buffer, first.offset, 0,
+                    128); // the old memory lives as long as the frame
     result.copyFrom(second.buffer, second.offset, 128, 4000);
     ring.endFrame();
     const std::vector<uint32_t> values = result.readAll<uint32_t>();
@@ -107,7 +110,8 @@ TEST_P(BufferTest, TheRingGrowsForAFrameThatDoesNotFitAndKeepsWhatWasThere) {
         ring.upload(small.data(), 128, 16);
         ring.endFrame();
     }
-    EXPECT_EQ(context().liveObjects().count(ObjectKind::Buffer), 2) << "the old memory goes when its frame is done";
+    EXPECT_EQ(context().liveObjects().count(ObjectKind::Buffer), 2)
+        << "the old memory goes when its frame is done";
 }
 
 TEST_P(BufferTest, ARingThatIsLongEnoughDoesNotGrow) {

@@ -32,7 +32,8 @@ INSTANTIATE_TEST_SUITE_P(On, ContextTest,
 /// Collects what is logged while it lives.
 struct LogCapture {
     std::vector<std::string> lines;
-    log::Sink before = log::setSink([this](log::Level, std::string_view line) { lines.emplace_back(line); });
+    log::Sink before =
+        log::setSink([this](log::Level, std::string_view line) { lines.emplace_back(line); });
     ~LogCapture() { log::setSink(before); }
 };
 
@@ -114,7 +115,8 @@ TEST_P(ContextTest, AnExtensionThatIsSwitchedOffIsAbsent) {
 }
 
 TEST_P(ContextTest, ExtensionsAreSwitchedOffByTheEnvironmentToo) {
-    setenv("TYNDALL_GL_DISABLE", "GL_EXT_texture_filter_anisotropic, GL_KHR_parallel_shader_compile", 1);
+    setenv("TYNDALL_GL_DISABLE",
+           "GL_EXT_texture_filter_anisotropic, GL_KHR_parallel_shader_compile", 1);
     const Result<Context> context = GetParam().make({});
     unsetenv("TYNDALL_GL_DISABLE");
     ASSERT_TRUE(context.ok()) << context.message();
@@ -220,7 +222,8 @@ TEST(Contexts, EveryListedDeviceIsOpenedOrRefusedWithASentence) {
         const Result<Context> context = Context::createEglDevice(device.index);
         if (context) {
             EXPECT_EQ(context->backendName(), "egl-device");
-            EXPECT_EQ(context->capabilities().isSoftware(), device.software) << context->capabilities().renderer;
+            EXPECT_EQ(context->capabilities().isSoftware(), device.software)
+                << context->capabilities().renderer;
         } else {
             EXPECT_FALSE(context.message().empty());
         }

@@ -18,8 +18,9 @@ TEST_P(ExecutorLifetimeTest, ACulledPassDoesNotRun) {
     runs = 0;
     for (const bool needed : {true, false}) {
         begin();
-        const Data& pass = graph().addPass<Data>("maybe", [](Builder& b, Data& d) { d.out = b.create("maybe", color()); },
-                                                 [](const Data&, PassContext&) { ++runs; });
+        const Data& pass = graph().addPass<Data>(
+            "maybe", [](Builder& b, Data& d) { d.out = b.create("maybe", color()); },
+            [](const Data&, PassContext&) { ++runs; });
         if (needed) graph().markOutput(pass.out);
         run();
         EXPECT_EQ(reportOf("maybe").status, needed ? PassStatus::Ran : PassStatus::Culled);
@@ -57,9 +58,16 @@ TEST_P(ExecutorLifetimeTest, HistoryCountsFramesAndStartsAnew) {
         begin();
         const TextureHistory history = graph().historyTexture("count", color(width, 8));
         const Data& pass = graph().addPass<Data>(
-            "count", [&](Builder& b, Data& d) { d.in = b.read(history.previous), d.out = b.write(history.current), d.value = 1; },
+            "count",
+            [&](Builder& b, Data& d) {
+                d.in = b.read(history.previous), d.out = b.write(history.current), d.value = 1;
+            },
             [](const Data& d, PassContext& c) {
-                c.compute("test/add.comp").bind("source", d.in).bind("target", d.out).set("value", d.value).dispatchOver(d.out);
+                c.compute("test/add.comp")
+                    .bind("source", d.in)
+                    .bind("target", d.out)
+                    .set("value", d.value)
+                    .dispatchOver(d.out);
             });
         graph().markOutput(pass.out);
         run();
@@ -75,15 +83,22 @@ TEST_P(ExecutorLifetimeTest, HistoryCountsFramesAndStartsAnew) {
 }
 
 TEST_P(ExecutorLifetimeTest, PersistentTexturesAccumulate) {
-    library().addSource("test/accumulate.comp", "layout(local_size_x = 8, local_size_y = 8) in;\nlayout(rgba32f) uniform image2D sum;\n"
-                                                "void main() { ivec2 p = ivec2(gl_GlobalInvocationID.xy); imageStore(sum, p, imageLoad(sum, p) + vec4(2)); }\n");
+    library().addSource(
+        "test/accumulate.comp",
+        "layout(local_size_x = 8, local_size_y = 8) in;\nlayout(rgba32f) uniform image2D sum;\n"
+        "void main() { ivec2 p = ivec2(gl_GlobalInvocationID.xy); imageStore(sum, p, imageLoad(sum, p) + vec4(2)); }\n");
     for (int i = 1; i <= 4; ++i) {
         begin();
         const PersistentTexture sum = graph().persistentTexture("sum", color());
         EXPECT_EQ(sum.wasReset, i == 1);
         const Data& pass = graph().addPass<Data>(
-            "accumulate", [&](Builder& b, Data& d) { d.in = b.read(sum.handle, Access::StorageRead), d.out = b.write(sum.handle); },
-            [](const Data& d, PassContext& c) { c.compute("test/accumulate.comp").bind("sum", d.out).dispatchOver(d.out); });
+            "accumulate",
+            [&](Builder& b, Data& d) {
+                d.in = b.read(sum.handle, Access::StorageRead), d.out = b.write(sum.handle);
+            },
+            [](const Data& d, PassContext& c) {
+                c.compute("test/accumulate.comp").bind("sum", d.out).dispatchOver(d.out);
+            });
         run();
         EXPECT_EQ(everywhere(pass.out), 2.0f * float(i));
     }
@@ -93,10 +108,16 @@ TEST_P(ExecutorLifetimeTest, PoisonShowsWhatAPassDidNotWrite) {
     executor().setOptions({.poison = true});
     begin();
     const TextureHandle half = fill("half", 1, color(16, 8), 8); // the left half only
-    const Data& integers = graph().addPass<Data>("integers", [](Builder& b, Data& d) { d.out = b.create("integers", texture2D(Format::R32UI, 4, 4)), d.bufferOut = b.create("bytes", BufferDesc{8}); },
-                                                 [](const Data&, PassContext&) {});
-    const Data& skipped = graph().addPass<Data>("skipped", [](Builder& b, Data& d) { d.out = b.create("gone", color()), b.skip("no"); },
-                                                [](const Data&, PassContext&) {});
+    const Data& integers = graph().addPass<Data>(
+        "integers",
+        [](Builder& b, Data& d) {
+            d.out = b.create("integers", texture2D(Format::R32UI, 4, 4)),
+            d.bufferOut = b.create("bytes", BufferDesc{8});
+        },
+        [](const Data&, PassContext&) {});
+    const Data& skipped = graph().addPass<Data>(
+        "skipped", [](Builder& b, Data& d) { d.out = b.create("gone", color()), b.skip("no"); },
+        [](const Data&, PassContext&) {});
     const TextureHandle absent = add("absent", skipped.out, 1);
     for (const TextureHandle output : {half, integers.out, absent}) graph().markOutput(output);
     graph().markOutput(integers.bufferOut);
@@ -105,8 +126,10 @@ TEST_P(ExecutorLifetimeTest, PoisonShowsWhatAPassDidNotWrite) {
     EXPECT_EQ(image.at(7, 3)[0], 1);
     EXPECT_TRUE(std::isnan(image.at(8, 3)[0]));
     EXPECT_TRUE(std::isnan(executor().readImage(absent).at(0, 0)[0])) << "a stand-in is poison too";
-    EXPECT_EQ(executor().readImage(integers.out).at(1, 1)[0], 4294967296.0f) << "0xFFFFFFFF as a float";
-    for (const std::byte byte : executor().readBuffer(integers.bufferOut)) EXPECT_EQ(byte, std::byte(0xff));
+    EXPECT_EQ(executor().readImage(integers.out).at(1, 1)[0], 4294967296.0f)
+        << "0xFFFFFFFF as a float";
+    for (const std::byte byte : executor().readBuffer(integers.bufferOut))
+        EXPECT_EQ(byte, std::byte(0xff));
 }
 
 TEST_P(ExecutorLifetimeTest, PoisonSparesResultsThatAreKept) {
@@ -117,17 +140,28 @@ TEST_P(ExecutorLifetimeTest, PoisonSparesResultsThatAreKept) {
         gl::Texture texture("source", gl::TextureSpec{GL_TEXTURE_2D, GL_RGBA32F, 16, 8, 1, 1});
         texture.clear(5);
         if (source_.id == 0) source_ = executor().registerTexture("source", std::move(texture));
-        const TextureHandle kept = add("kept", graph().importTexture("source", source_, color(), 1), 1, &key);
+        const TextureHandle kept =
+            add("kept", graph().importTexture("source", source_, color(), 1), 1, &key);
         const TextureHistory history = graph().historyTexture("h", color());
         const Data& pass = graph().addPass<Data>(
-            "keep", [&](Builder& b, Data& d) { d.in = b.read(kept), d.out = b.write(history.current), b.read(history.previous); },
-            [](const Data& d, PassContext& c) { c.compute("test/add.comp").bind("source", d.in).bind("target", d.out).set("value", 0.0f).dispatchOver(d.out); });
+            "keep",
+            [&](Builder& b, Data& d) {
+                d.in = b.read(kept), d.out = b.write(history.current), b.read(history.previous);
+            },
+            [](const Data& d, PassContext& c) {
+                c.compute("test/add.comp")
+                    .bind("source", d.in)
+                    .bind("target", d.out)
+                    .set("value", 0.0f)
+                    .dispatchOver(d.out);
+            });
         const TextureHandle old = add("old", history.previous, 0);
         graph().markOutput(pass.out);
         graph().markOutput(old);
         run();
         EXPECT_EQ(everywhere(pass.out), 6);
-        EXPECT_EQ(std::isnan(executor().readImage(old).at(0, 0)[0]), i == 0) << "there is no past in the first frame";
+        EXPECT_EQ(std::isnan(executor().readImage(old).at(0, 0)[0]), i == 0)
+            << "there is no past in the first frame";
     }
 }
 
@@ -140,11 +174,14 @@ TEST_P(ExecutorLifetimeTest, StorageIsSharedAcrossFramesAndFreedWhenUnused) {
     frame(64);
     const gl::LiveObjects before = context().liveObjects();
     for (int i = 0; i < 20; ++i) frame(64);
-    EXPECT_EQ(context().liveObjects().count(gl::ObjectKind::Texture), before.count(gl::ObjectKind::Texture));
-    EXPECT_EQ(context().liveObjects().bytes, before.bytes) << "nothing is made after the first frame";
+    EXPECT_EQ(context().liveObjects().count(gl::ObjectKind::Texture),
+              before.count(gl::ObjectKind::Texture));
+    EXPECT_EQ(context().liveObjects().bytes, before.bytes)
+        << "nothing is made after the first frame";
     const uint64_t bytes64 = executor().report().gpuBytes;
     for (int i = 0; i < 12; ++i) frame(16);
-    EXPECT_EQ(bytes64 - executor().report().gpuBytes, 2u * (64u - 16u) * 8u * 16u) << "two textures shrank from 64 to 16 columns";
+    EXPECT_EQ(bytes64 - executor().report().gpuBytes, 2u * (64u - 16u) * 8u * 16u)
+        << "two textures shrank from 64 to 16 columns";
     EXPECT_EQ(executor().report().liveTextures, 2u);
 }
 
@@ -156,8 +193,17 @@ TEST_P(ExecutorLifetimeTest, NoObjectIsMadeAfterTheFirstFrames) {
         TextureHandle last = add("kept", fill("fresh", 1), 1, &key);
         for (int i = 0; i < 10; ++i) last = add("step", last, 1);
         const Data& pass = graph().addPass<Data>(
-            "history", [&](Builder& b, Data& d) { d.in = b.read(last), b.read(history.previous), d.out = b.write(history.current); },
-            [](const Data& d, PassContext& c) { c.compute("test/add.comp").bind("source", d.in).bind("target", d.out).set("value", 0.0f).dispatchOver(d.out); });
+            "history",
+            [&](Builder& b, Data& d) {
+                d.in = b.read(last), b.read(history.previous), d.out = b.write(history.current);
+            },
+            [](const Data& d, PassContext& c) {
+                c.compute("test/add.comp")
+                    .bind("source", d.in)
+                    .bind("target", d.out)
+                    .set("value", 0.0f)
+                    .dispatchOver(d.out);
+            });
         graph().markOutput(pass.out);
         run();
     };
@@ -208,7 +254,9 @@ TEST_P(ExecutorLifetimeTest, ReportsTellTimesOfEveryPassThatRan) {
         EXPECT_DOUBLE_EQ(report.gpuMs, report.passes[0].gpuMs + report.passes[1].gpuMs);
     }
     begin();
-    graph().addPass<Data>("same", [](Builder& b, Data& d) { d.out = b.create("x", color()), b.skip("no"); }, [](const Data&, PassContext&) {});
+    graph().addPass<Data>(
+        "same", [](Builder& b, Data& d) { d.out = b.create("x", color()), b.skip("no"); },
+        [](const Data&, PassContext&) {});
     run();
     if (timed) {
         EXPECT_GE(reportOf("same").savedMs, 0) << "what it took when it last ran";
@@ -216,19 +264,26 @@ TEST_P(ExecutorLifetimeTest, ReportsTellTimesOfEveryPassThatRan) {
 }
 
 TEST_P(ExecutorLifetimeTest, InvalidTexelsAreCountedForEachPass) {
-    library().addSource("test/invalid.comp", "layout(local_size_x = 8, local_size_y = 8) in;\n"
-                                             "layout(rgba32f) uniform writeonly image2D target;\nuniform float zero;\n"
-                                             "void main() { ivec2 p = ivec2(gl_GlobalInvocationID.xy); vec4 v = vec4(1);\n"
-                                             "  if (p.x == 3) v.y = uintBitsToFloat(0x7fc00000u);\n" // NaN in 8 texels
-                                             "  if (p == ivec2(5, 5)) v.x = 1.0 / zero;\n"            // infinity in one
-                                             "  if (p.y == 0 && p.x > 8) v.z = -1.0;\n"               // negative in 7
-                                             "  imageStore(target, p, v); }\n");
+    library().addSource(
+        "test/invalid.comp",
+        "layout(local_size_x = 8, local_size_y = 8) in;\n"
+        "layout(rgba32f) uniform writeonly image2D target;\nuniform float zero;\n"
+        "void main() { ivec2 p = ivec2(gl_GlobalInvocationID.xy); vec4 v = vec4(1);\n"
+        "  if (p.x == 3) v.y = uintBitsToFloat(0x7fc00000u);\n" // NaN in 8 texels
+        "  if (p == ivec2(5, 5)) v.x = 1.0 / zero;\n"           // infinity in one
+        "  if (p.y == 0 && p.x > 8) v.z = -1.0;\n"              // negative in 7
+        "  imageStore(target, p, v); }\n");
     executor().setOptions({.checkTexels = true});
     const auto frame = [&] {
         begin();
         const Data& bad = graph().addPass<Data>(
             "bad", [](Builder& b, Data& d) { d.out = b.create("bad", color(16, 8)); },
-            [](const Data& d, PassContext& c) { c.compute("test/invalid.comp").bind("target", d.out).set("zero", 0.0f).dispatchOver(d.out); });
+            [](const Data& d, PassContext& c) {
+                c.compute("test/invalid.comp")
+                    .bind("target", d.out)
+                    .set("zero", 0.0f)
+                    .dispatchOver(d.out);
+            });
         graph().markOutput(bad.out);
         graph().markOutput(fill("good", 1, color(13, 7)));
         run();

@@ -12,7 +12,8 @@ public:
         for (gl::Context& context : contexts) context = {};
     }
     static SharedContexts& instance() {
-        static auto* shared = static_cast<SharedContexts*>(::testing::AddGlobalTestEnvironment(new SharedContexts));
+        static auto* shared =
+            static_cast<SharedContexts*>(::testing::AddGlobalTestEnvironment(new SharedContexts));
         return *shared;
     }
     std::array<gl::Context, 2> contexts;
@@ -55,16 +56,19 @@ void GlTest::SetUp() {
     if (context_ == nullptr && GetParam() == TestBackend::Osmesa) GTEST_SKIP() << why;
     ASSERT_NE(context_, nullptr) << why;
     context_->debugLog().reset();
-    ASSERT_EQ(context_->liveObjects().total(), 0) << "left by a test before: " << context_->liveObjects().describe();
+    ASSERT_EQ(context_->liveObjects().total(), 0)
+        << "left by a test before: " << context_->liveObjects().describe();
 }
 
 void GlTest::TearDown() {
     if (context_ == nullptr) return;
     context_->makeCurrent();
     glFinish();
-    for (const std::string& message : context_->debugLog().highSeverityMessages()) ADD_FAILURE() << message;
+    for (const std::string& message : context_->debugLog().highSeverityMessages())
+        ADD_FAILURE() << message;
     EXPECT_EQ(context_->debugLog().count(gl::Severity::High), 0u);
-    EXPECT_EQ(context_->liveObjects().total(), 0) << "left by this test: " << context_->liveObjects().describe();
+    EXPECT_EQ(context_->liveObjects().total(), 0)
+        << "left by this test: " << context_->liveObjects().describe();
     EXPECT_EQ(context_->liveObjects().bytes, 0);
 }
 

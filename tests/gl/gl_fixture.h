@@ -43,6 +43,6 @@ private:
 } // namespace tyndall::test
 
 /// Runs the tests of `FIXTURE` on every back end.
-#define TYNDALL_GL_TESTS(FIXTURE)                                                                                      \
-    INSTANTIATE_TEST_SUITE_P(On, FIXTURE, ::testing::ValuesIn(::tyndall::test::testBackends()),                        \
+#define TYNDALL_GL_TESTS(FIXTURE)                                                                  \
+    INSTANTIATE_TEST_SUITE_P(On, FIXTURE, ::testing::ValuesIn(::tyndall::test::testBackends()),    \
                              ::tyndall::test::testBackendName)

@@ -15,7 +15,9 @@ namespace tyndall::gl {
 namespace {
 
 double milliseconds() {
-    return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now().time_since_epoch()).count();
+    return std::chrono::duration<double, std::milli>(
+               std::chrono::steady_clock::now().time_since_epoch())
+        .count();
 }
 
 /// Work of a length that can be chosen, as a draw and as a compute shader. The latter reads what was drawn: without
@@ -36,17 +38,22 @@ struct Work {
             "work.comp",
             "layout(local_size_x = 64) in;\nuniform sampler2D drawn;\nlayout(std430) buffer Out { float results[]; "
             "};\n" +
-                loop + "void main() { results[gl_GlobalInvocationID.x] = work(texelFetch(drawn, ivec2(0), 0).r); }\n");
-        library.addSource("work.vert", "void main() { gl_Position = vec4(gl_VertexID == 1 ? 3.0 : -1.0, gl_VertexID == "
-                                       "2 ? 3.0 : -1.0, 0.5, 1.0); }\n");
-        library.addSource("work.frag", "out float color;\n" + loop + "void main() { color = work(gl_FragCoord.x); }\n");
+                loop +
+                "void main() { results[gl_GlobalInvocationID.x] = work(texelFetch(drawn, ivec2(0), 0).r); }\n");
+        library.addSource(
+            "work.vert",
+            "void main() { gl_Position = vec4(gl_VertexID == 1 ? 3.0 : -1.0, gl_VertexID == "
+            "2 ? 3.0 : -1.0, 0.5, 1.0); }\n");
+        library.addSource("work.frag", "out float color;\n" + loop +
+                                           "void main() { color = work(gl_FragCoord.x); }\n");
         compute = library.compute("work.comp").value();
         raster = library.raster("work.vert", "work.frag").value();
     }
     void dispatch(int steps) {
         compute->set("steps", steps);
         glUseProgram(compute->id());
-        glBindBufferBase(GL_SHADER_STORAGE_BUFFER, GLuint(compute->find("Out")->binding), buffer.id());
+        glBindBufferBase(GL_SHADER_STORAGE_BUFFER, GLuint(compute->find("Out")->binding),
+                         buffer.id());
         glBindTextureUnit(GLuint(compute->find("drawn")->binding), texture.id());
         glDispatchCompute(64, 1, 1);
         glUseProgram(0);
@@ -155,8 +162,9 @@ TEST_P(GpuTimerTest, TimeIsGivenToTheSpanThatTookIt) {
     EXPECT_GT(spans[4].milliseconds, spans[3].milliseconds);
     double sum = 0;
     for (size_t i = 1; i < 5; ++i) sum += spans[i].milliseconds;
-    EXPECT_GE(spans[0].milliseconds * 1.001, sum) << spans[1].milliseconds << " + " << spans[2].milliseconds << " + "
-                                                  << spans[3].milliseconds << " + " << spans[4].milliseconds;
+    EXPECT_GE(spans[0].milliseconds * 1.001, sum)
+        << spans[1].milliseconds << " + " << spans[2].milliseconds << " + " << spans[3].milliseconds
+        << " + " << spans[4].milliseconds;
 }
 
 /// While the GPU is busy with the frame, asking for its times must return at once and without them.

@@ -60,8 +60,9 @@ TEST_P(ObjectTest, EveryKindIsCountedWhileItLives) {
         framebuffers.get({&color, 1});
         const VertexArray vertices("vertices", {});
         const Fence fence = Fence::insert();
-        for (ObjectKind kind : {ObjectKind::Buffer, ObjectKind::Texture, ObjectKind::Sampler, ObjectKind::Framebuffer,
-                                ObjectKind::VertexArray, ObjectKind::Fence})
+        for (ObjectKind kind :
+             {ObjectKind::Buffer, ObjectKind::Texture, ObjectKind::Sampler, ObjectKind::Framebuffer,
+              ObjectKind::VertexArray, ObjectKind::Fence})
             EXPECT_EQ(context().liveObjects().count(kind), 1) << objectKindName(kind);
         EXPECT_EQ(context().liveObjects().describe(),
                   "1 buffer, 1 texture, 1 sampler, 1 framebuffer, 1 vertex array, 1 fence");
@@ -96,7 +97,8 @@ TEST_P(ObjectTest, AnErrorOfTheDriverIsRecordedWithTheGroupsAroundIt) {
 
 TEST_P(ObjectTest, DebugGroupsAloneSayNothing) {
     { const DebugGroup group("quiet"); }
-    for (Severity severity : {Severity::Notification, Severity::Low, Severity::Medium, Severity::High})
+    for (Severity severity :
+         {Severity::Notification, Severity::Low, Severity::Medium, Severity::High})
         EXPECT_EQ(context().debugLog().count(severity), 0u) << severityName(severity);
     EXPECT_GE(context().debugLog().dropped(), 2u) << "the driver reports both ends of a group";
 }
@@ -124,8 +126,10 @@ TEST_P(ObjectTest, AFenceIsPassedAfterItWasWaitedFor) {
 }
 
 TEST_P(ObjectTest, AFramebufferIsMadeOncePerSetOfAttachments) {
-    const Texture color("color", {.internalFormat = GL_RGBA16F, .width = 4, .height = 4, .mips = 2});
-    const Texture depth("depth", {.internalFormat = GL_DEPTH_COMPONENT32F, .width = 4, .height = 4});
+    const Texture color("color",
+                        {.internalFormat = GL_RGBA16F, .width = 4, .height = 4, .mips = 2});
+    const Texture depth("depth",
+                        {.internalFormat = GL_DEPTH_COMPONENT32F, .width = 4, .height = 4});
     FramebufferCache cache;
     const Attachment colors[] = {{&color}}, smaller[] = {{&color, 1}};
     const Attachment depthAttachment{&depth};
@@ -146,9 +150,12 @@ TEST_P(ObjectTest, AFramebufferIsMadeOncePerSetOfAttachments) {
 }
 
 TEST_P(ObjectTest, ClearingAFramebufferReachesTheAttachedMipAndLayerAlone) {
-    Texture array(
-        "array",
-        {.target = GL_TEXTURE_2D_ARRAY, .internalFormat = GL_R32F, .width = 4, .height = 4, .depth = 3, .mips = 2});
+    Texture array("array", {.target = GL_TEXTURE_2D_ARRAY,
+                            .internalFormat = GL_R32F,
+                            .width = 4,
+                            .height = 4,
+                            .depth = 3,
+                            .mips = 2});
     array.clear(7.0f);
     FramebufferCache cache;
     const Attachment target[] = {{&array, 1, 2}};

@@ -65,7 +65,8 @@ TEST_P(ProgramTest, ReflectionFindsEveryResourceAndGivesEachItsOwnBinding) {
     EXPECT_EQ(p.find("table")->count, 2);
     ASSERT_NE(p.find("volume"), nullptr);
     const int first = p.find("table")->binding, third = p.find("volume")->binding;
-    EXPECT_TRUE(third < first || third >= first + 2) << "an array takes as many units as it has elements";
+    EXPECT_TRUE(third < first || third >= first + 2)
+        << "an array takes as many units as it has elements";
     ASSERT_NE(p.find("picture"), nullptr);
     EXPECT_EQ(p.find("picture")->kind, ResourceKind::Image);
     ASSERT_NE(p.find("factor"), nullptr);
@@ -107,15 +108,18 @@ TEST_P(ProgramTest, WhatIsBoundByNameIsWhatTheShaderReads) {
     glBindTextureUnit(GLuint(p.find("table")->binding), one.id());
     glBindTextureUnit(GLuint(p.find("table")->binding) + 1, two.id());
     glBindTextureUnit(GLuint(p.find("volume")->binding), volume.id());
-    glBindImageTexture(GLuint(p.find("picture")->binding), picture.id(), 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_R32F);
+    glBindImageTexture(GLuint(p.find("picture")->binding), picture.id(), 0, GL_FALSE, 0,
+                       GL_WRITE_ONLY, GL_R32F);
     p.set("factor", 3.0f);
     p.set("offset", int32_t(10));
     p.set("unknown", 1.0f);
     glDispatchCompute(1, 1, 1);
 
     const std::vector<float> results = output.readAll<float>();
-    for (size_t i = 0; i < 32; ++i) EXPECT_EQ(results[i], 2.0f * (float(i) + 1.5f) * 3.0f + 0.5f + 10.0f + 700.0f);
-    EXPECT_EQ(readFloats(picture), std::vector<float>(32, 32.0f)) << "length() of the unbounded array";
+    for (size_t i = 0; i < 32; ++i)
+        EXPECT_EQ(results[i], 2.0f * (float(i) + 1.5f) * 3.0f + 0.5f + 10.0f + 700.0f);
+    EXPECT_EQ(readFloats(picture), std::vector<float>(32, 32.0f))
+        << "length() of the unbounded array";
     glUseProgram(0);
 }
 
@@ -156,8 +160,10 @@ TEST_P(ProgramTest, SharedStructsHaveOneLayoutInBothLanguages) {
     ASSERT_NE(lights, nullptr);
     ASSERT_FALSE(lights->members.empty());
     EXPECT_EQ(lights->members.front().topLevelStride, int(sizeof(gpu::LightData)));
-    EXPECT_EQ(offsetOf(*lights, "lights[0].samplePoint"), int(offsetof(gpu::LightData, samplePoint)));
-    EXPECT_EQ(offsetOf(*lights, "lights[0].shadowIndex"), int(offsetof(gpu::LightData, shadowIndex)));
+    EXPECT_EQ(offsetOf(*lights, "lights[0].samplePoint"),
+              int(offsetof(gpu::LightData, samplePoint)));
+    EXPECT_EQ(offsetOf(*lights, "lights[0].shadowIndex"),
+              int(offsetof(gpu::LightData, shadowIndex)));
     const ProgramResource* views = (*program)->find("ShadowViews");
     ASSERT_NE(views, nullptr);
     EXPECT_EQ(views->members.front().topLevelStride, int(sizeof(gpu::ShadowView)));
@@ -167,9 +173,11 @@ TEST_P(ProgramTest, SharedStructsHaveOneLayoutInBothLanguages) {
 
 TEST_P(ProgramTest, ARasterProgramDraws) {
     ShaderLibrary library = libraryOf({
-        {"t.vert", "void main() { gl_Position = vec4(gl_VertexID == 1 ? 3.0 : -1.0, gl_VertexID == 2 ? 3.0 : -1.0, "
-                   "0.5, 1.0); }\n"},
-        {"t.frag", "out vec4 color;\nvoid main() { color = vec4(gl_FragCoord.xy, gl_FragCoord.z, LEVEL); }\n"},
+        {"t.vert",
+         "void main() { gl_Position = vec4(gl_VertexID == 1 ? 3.0 : -1.0, gl_VertexID == 2 ? 3.0 : -1.0, "
+         "0.5, 1.0); }\n"},
+        {"t.frag",
+         "out vec4 color;\nvoid main() { color = vec4(gl_FragCoord.xy, gl_FragCoord.z, LEVEL); }\n"},
     });
     const Result<const Program*> program = library.raster("t.vert", "t.frag", {{"LEVEL", 7}});
     ASSERT_TRUE(program.ok()) << program.message();
@@ -192,14 +200,16 @@ TEST_P(ProgramTest, ARasterProgramDraws) {
             const float* pixel = pixels.data() + (y * 3 + x) * 4;
             EXPECT_EQ(pixel[0], float(x) + 0.5f);
             EXPECT_EQ(pixel[1], float(y) + 0.5f);
-            EXPECT_EQ(pixel[2], 0.5f) << "clip-space depth 0.5 stays 0.5 where depth runs from zero to one";
+            EXPECT_EQ(pixel[2], 0.5f)
+                << "clip-space depth 0.5 stays 0.5 where depth runs from zero to one";
             EXPECT_EQ(pixel[3], 7.0f);
         }
 }
 
 TEST_P(ProgramTest, AMistakeInAnIncludeIsReportedWithItsFileAndLine) {
     ShaderLibrary library = libraryOf({
-        {"t.comp", "layout(local_size_x = 1) in;\n#include \"lib/broken.glsl\"\nvoid main() { broken(); }\n"},
+        {"t.comp",
+         "layout(local_size_x = 1) in;\n#include \"lib/broken.glsl\"\nvoid main() { broken(); }\n"},
         {"lib/broken.glsl", "void fine() {}\n\nvoid broken() {\n    float x = nonsense;\n}\n"},
     });
     const Result<const Program*> program = library.compute("t.comp");
@@ -211,7 +221,8 @@ TEST_P(ProgramTest, AMistakeInAnIncludeIsReportedWithItsFileAndLine) {
 
 TEST_P(ProgramTest, AMistakeAfterAnIncludeIsReportedWithItsOwnLine) {
     ShaderLibrary library = libraryOf({
-        {"t.comp", "layout(local_size_x = 1) in;\n#include \"lib/fine.glsl\"\n\nvoid main() { nonsense(); }\n"},
+        {"t.comp",
+         "layout(local_size_x = 1) in;\n#include \"lib/fine.glsl\"\n\nvoid main() { nonsense(); }\n"},
         {"lib/fine.glsl", "void fine() {}\n// comment\n"},
     });
     const Result<const Program*> program = library.compute("t.comp", {{"A", 1}, {"B", 2}});
@@ -235,7 +246,8 @@ TEST_P(ProgramTest, TooManyBindingsAreAnErrorAndNotACrash) {
     std::string text = "layout(local_size_x = 1) in;\n";
     std::string body;
     for (int i = 0; i <= limit; ++i) {
-        text += "layout(std430) buffer B" + std::to_string(i) + " { float v" + std::to_string(i) + "; };\n";
+        text += "layout(std430) buffer B" + std::to_string(i) + " { float v" + std::to_string(i) +
+                "; };\n";
         body += "v" + std::to_string(i) + " = 1.0;\n";
     }
     ShaderLibrary library;
@@ -247,11 +259,13 @@ TEST_P(ProgramTest, TooManyBindingsAreAnErrorAndNotACrash) {
 
 TEST_P(ProgramTest, WhatTheCompilerRemarksIsKeptWithFileAndLine) {
     ShaderLibrary library = libraryOf({
-        {"t.comp", "layout(local_size_x = 1) in;\nlayout(std430) buffer Out { float result; };\n"
-                   "struct Pair { float a, b; };\nPair pair;\nfloat sum() {\n    return pair.a + pair.b;\n}\n"
-                   "void main() { result = sum(); }\n"},
-        {"clean.comp", "layout(local_size_x = 1) in;\nlayout(std430) buffer Out { float result; };\n"
-                       "void main() { result = 1.0; }\n"},
+        {"t.comp",
+         "layout(local_size_x = 1) in;\nlayout(std430) buffer Out { float result; };\n"
+         "struct Pair { float a, b; };\nPair pair;\nfloat sum() {\n    return pair.a + pair.b;\n}\n"
+         "void main() { result = sum(); }\n"},
+        {"clean.comp",
+         "layout(local_size_x = 1) in;\nlayout(std430) buffer Out { float result; };\n"
+         "void main() { result = 1.0; }\n"},
     });
     EXPECT_EQ(library.compute("clean.comp").value()->warnings(), "");
     const std::string warnings = library.compute("t.comp").value()->warnings();
@@ -260,8 +274,9 @@ TEST_P(ProgramTest, WhatTheCompilerRemarksIsKeptWithFileAndLine) {
 }
 
 TEST_P(ProgramTest, MovedFromIsEmpty) {
-    const StageSource stage{GL_COMPUTE_SHADER,
-                            {"#version 450 core\nlayout(local_size_x = 2) in;\nvoid main() {}\n", {"t.comp"}}};
+    const StageSource stage{
+        GL_COMPUTE_SHADER,
+        {"#version 450 core\nlayout(local_size_x = 2) in;\nvoid main() {}\n", {"t.comp"}}};
     Result<Program> built = Program::build("t.comp", {&stage, 1});
     ASSERT_TRUE(built.ok()) << built.message();
     Program moved = std::move(*built);

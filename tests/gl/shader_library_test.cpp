@@ -38,7 +38,8 @@ protected:
     void write(const std::string& path, const std::string& text) {
         fs::create_directories((folder / path).parent_path());
         std::ofstream(folder / path, std::ios::binary) << text;
-        fs::last_write_time(folder / path, fs::file_time_type::clock::now() + std::chrono::seconds(++edits_));
+        fs::last_write_time(folder / path,
+                            fs::file_time_type::clock::now() + std::chrono::seconds(++edits_));
     }
     [[nodiscard]] ShaderLibrary library() const {
         ShaderLibraryOptions options;
@@ -56,8 +57,8 @@ protected:
     }
     /// Warnings that mention `text`.
     [[nodiscard]] size_t warningsWith(std::string_view text) const {
-        return size_t(
-            std::ranges::count_if(warnings, [&](const std::string& w) { return w.find(text) != std::string::npos; }));
+        return size_t(std::ranges::count_if(
+            warnings, [&](const std::string& w) { return w.find(text) != std::string::npos; }));
     }
 
     fs::path folder = test::scratchDir("shaders");
@@ -120,10 +121,13 @@ TEST_P(ShaderLibraryTest, ABrokenEditKeepsTheLastGoodProgramAndIsReportedOnce) {
     EXPECT_EQ(warningsWith("lib/value.glsl:1"), 1u);
     ASSERT_EQ(lib.failures().size(), 1u);
 
-    write("lib/value.glsl", "#include \"lib/more.glsl\"\nfloat value() { return more(); }\n"); // broken in another way
+    write(
+        "lib/value.glsl",
+        "#include \"lib/more.glsl\"\nfloat value() { return more(); }\n"); // broken in another way
     EXPECT_EQ(lib.pollChanges(), 0);
     EXPECT_EQ(warningsWith("lib/more.glsl"), 1u);
-    write("lib/more.glsl", "float more() { return 3.0; }\n"); // mended by a file that was not there before
+    write("lib/more.glsl",
+          "float more() { return 3.0; }\n"); // mended by a file that was not there before
     EXPECT_EQ(lib.pollChanges(), 1);
     EXPECT_EQ(run(*program), 3.0f);
     EXPECT_TRUE(lib.failures().empty());
@@ -157,7 +161,9 @@ TEST_P(ShaderLibraryTest, AFileThatIsGoneForAMomentIsNoChange) {
 
 TEST_P(ShaderLibraryTest, TheFolderComesBeforeAddedSourcesAndTheseBeforeEmbeddedOnes) {
     static constexpr EmbeddedShader kEmbedded[] = {
-        {"a.comp", kShader}, {"lib/value.glsl", "float value() { return 1.0; }\n"}, {"variants.txt", "a.comp\n"}};
+        {"a.comp", kShader},
+        {"lib/value.glsl", "float value() { return 1.0; }\n"},
+        {"variants.txt", "a.comp\n"}};
     ShaderLibraryOptions options;
     options.embedded = kEmbedded;
     options.folder = folder;
@@ -218,7 +224,8 @@ TEST_P(ShaderLibraryTest, PrefetchedProgramsAreTheSameAsOthers) {
     write("lib/value.glsl", "float value() { return float(LEVEL); }\n");
     ShaderLibrary lib = library();
     std::vector<ProgramRequest> requests;
-    for (int32_t level = 0; level < 4; ++level) requests.push_back({{"a.comp"}, {{"LEVEL", level}}});
+    for (int32_t level = 0; level < 4; ++level)
+        requests.push_back({{"a.comp"}, {{"LEVEL", level}}});
     lib.prefetch(requests);
     EXPECT_EQ(lib.programCount(), 4u);
     for (int32_t level = 0; level < 4; ++level)
@@ -230,9 +237,10 @@ TEST(EngineShaders, AreAllInTheListOfVariants) {
     const ShaderLibrary lib;
     for (const EmbeddedShader& shader : engineShaders()) {
         if (!stageOfFile(shader.path)) continue;
-        const bool listed = std::ranges::any_of(lib.variants().lines(), [&](const VariantLine& line) {
-            return std::ranges::find(line.files, shader.path) != line.files.end();
-        });
+        const bool listed =
+            std::ranges::any_of(lib.variants().lines(), [&](const VariantLine& line) {
+                return std::ranges::find(line.files, shader.path) != line.files.end();
+            });
         EXPECT_TRUE(listed) << shader.path << " is not in shaders/variants.txt";
     }
 }

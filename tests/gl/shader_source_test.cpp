@@ -24,14 +24,16 @@ struct Folder {
             return found->second;
         };
     }
-    [[nodiscard]] Result<ExpandedShader> expand(const std::string& path, std::vector<ShaderDefine> defines = {}) const {
+    [[nodiscard]] Result<ExpandedShader> expand(const std::string& path,
+                                                std::vector<ShaderDefine> defines = {}) const {
         return expandShader(path, defines, reader());
     }
 };
 
 size_t occurrences(const std::string& text, std::string_view part) {
     size_t count = 0;
-    for (size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) ++count;
+    for (size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1))
+        ++count;
     return count;
 }
 
@@ -39,12 +41,14 @@ TEST(ShaderSource, BeginsWithVersionAndDefines) {
     const Folder folder{{{"a.comp", "void main() {}\n"}}};
     const Result<ExpandedShader> shader = folder.expand("a.comp", {{"EXACT", 1}, {"STEPS", -4}});
     ASSERT_TRUE(shader.ok()) << shader.message();
-    EXPECT_EQ(shader->text, "#version 450 core\n#define EXACT 1\n#define STEPS -4\n#line 1\nvoid main() {}\n");
+    EXPECT_EQ(shader->text,
+              "#version 450 core\n#define EXACT 1\n#define STEPS -4\n#line 1\nvoid main() {}\n");
     EXPECT_EQ(shader->files, std::vector<std::string>{"a.comp"});
 }
 
 TEST(ShaderSource, AnIncludeIsNumberedAndTheLinesAfterItKeepTheirNumbers) {
-    const Folder folder{{{"a.comp", "one\n#include \"lib/b.glsl\"\nthree\n"}, {"lib/b.glsl", "bee\n"}}};
+    const Folder folder{
+        {{"a.comp", "one\n#include \"lib/b.glsl\"\nthree\n"}, {"lib/b.glsl", "bee\n"}}};
     const Result<ExpandedShader> shader = folder.expand("a.comp");
     ASSERT_TRUE(shader.ok()) << shader.message();
     EXPECT_THAT(shader->text, HasSubstr("#line 100001\nbee\n"));
@@ -63,8 +67,8 @@ TEST(ShaderSource, AnIncludeThatIsNeededTwiceIsThereOnce) {
 
 /// Only the driver knows whether the first copy counts, so both are there, and a guard lets it take one.
 TEST(ShaderSource, AnIncludeInsideACaseStaysAvailableOutsideIt) {
-    const Folder folder{
-        {{"a.comp", "#if MASK\n#include \"b.glsl\"\n#endif\n#include \"b.glsl\"\n"}, {"b.glsl", "bee\n"}}};
+    const Folder folder{{{"a.comp", "#if MASK\n#include \"b.glsl\"\n#endif\n#include \"b.glsl\"\n"},
+                         {"b.glsl", "bee\n"}}};
     const Result<ExpandedShader> shader = folder.expand("a.comp", {{"MASK", 0}});
     ASSERT_TRUE(shader.ok()) << shader.message();
     EXPECT_EQ(occurrences(shader->text, "bee"), 2u);
@@ -81,13 +85,16 @@ TEST(ShaderSource, WhatIsForCppIsLeftOut) {
     EXPECT_THAT(shader->text, Not(HasSubstr("inner")));
     EXPECT_THAT(shader->text, Not(HasSubstr("cpp")));
     EXPECT_THAT(shader->text, HasSubstr("glsl\n#endif\nboth\n"));
-    EXPECT_EQ(occurrences(shader->text, "\n"), 1u + 1u + 10u) << "version and #line, then every line in its place";
+    EXPECT_EQ(occurrences(shader->text, "\n"), 1u + 1u + 10u)
+        << "version and #line, then every line in its place";
 }
 
 TEST(ShaderSource, WhatIsCommentedOutIsNotIncluded) {
-    const Folder folder{{{"a.comp", "// #include \"x.glsl\"\n/* begins\n#include \"x.glsl\"\nends */ rest // /*\n  #  "
-                                    "include \"b.glsl\" // here\n"},
-                         {"b.glsl", "bee"}}};
+    const Folder folder{
+        {{"a.comp",
+          "// #include \"x.glsl\"\n/* begins\n#include \"x.glsl\"\nends */ rest // /*\n  #  "
+          "include \"b.glsl\" // here\n"},
+         {"b.glsl", "bee"}}};
     const Result<ExpandedShader> shader = folder.expand("a.comp");
     ASSERT_TRUE(shader.ok()) << shader.message();
     EXPECT_THAT(shader->text, HasSubstr("\nbee\n"));
@@ -125,24 +132,30 @@ TEST(ShaderSource, MessagesOfEveryDriverGetFileAndLine) {
               "a.comp:7: error C1008: undefined variable \"x\"");
     EXPECT_EQ(mapShaderMessages("ERROR: 0:100003: 'x' : undeclared identifier", shader),
               "lib/b.glsl:3: ERROR: 'x' : undeclared identifier");
-    EXPECT_EQ(mapShaderMessages("error: linking failed\n0:1(1): w", shader), "error: linking failed\na.comp:1:1: w");
+    EXPECT_EQ(mapShaderMessages("error: linking failed\n0:1(1): w", shader),
+              "error: linking failed\na.comp:1:1: w");
     EXPECT_EQ(mapShaderMessages("0:900001(1): error: e", shader), "line 900001:1: error: e");
 }
 
 TEST(Variants, EveryCombinationOfEveryLineIsVisitedOnce) {
-    const Result<VariantList> list =
-        VariantList::parse("# all\nmedia/march.comp EXACT=0,1 OCTAVES=0,2,4  # six\n\ng.vert g.frag\n", "variants.txt");
+    const Result<VariantList> list = VariantList::parse(
+        "# all\nmedia/march.comp EXACT=0,1 OCTAVES=0,2,4  # six\n\ng.vert g.frag\n",
+        "variants.txt");
     ASSERT_TRUE(list.ok()) << list.message();
     std::vector<std::string> seen;
-    list->forEachVariant([&](const ProgramRequest& request) { seen.push_back(request.describe()); });
-    EXPECT_THAT(seen, ::testing::UnorderedElementsAre(
-                          "media/march.comp EXACT=0 OCTAVES=0", "media/march.comp EXACT=0 OCTAVES=2",
-                          "media/march.comp EXACT=0 OCTAVES=4", "media/march.comp EXACT=1 OCTAVES=0",
-                          "media/march.comp EXACT=1 OCTAVES=2", "media/march.comp EXACT=1 OCTAVES=4", "g.vert g.frag"));
+    list->forEachVariant(
+        [&](const ProgramRequest& request) { seen.push_back(request.describe()); });
+    EXPECT_THAT(seen,
+                ::testing::UnorderedElementsAre(
+                    "media/march.comp EXACT=0 OCTAVES=0", "media/march.comp EXACT=0 OCTAVES=2",
+                    "media/march.comp EXACT=0 OCTAVES=4", "media/march.comp EXACT=1 OCTAVES=0",
+                    "media/march.comp EXACT=1 OCTAVES=2", "media/march.comp EXACT=1 OCTAVES=4",
+                    "g.vert g.frag"));
 }
 
 TEST(Variants, ARequestMustNameEveryDefineOfItsLineWithAListedValue) {
-    const Result<VariantList> list = VariantList::parse("a.comp EXACT=0,1 OCTAVES=0\na.comp FAST=1\n", "variants.txt");
+    const Result<VariantList> list =
+        VariantList::parse("a.comp EXACT=0,1 OCTAVES=0\na.comp FAST=1\n", "variants.txt");
     ASSERT_TRUE(list.ok()) << list.message();
     EXPECT_TRUE(list->contains({{"a.comp"}, {{"OCTAVES", 0}, {"EXACT", 1}}}));
     EXPECT_TRUE(list->contains({{"a.comp"}, {{"FAST", 1}}}));

@@ -24,7 +24,8 @@ std::vector<float> ramp(size_t count, float step) {
 
 TEST_P(TextureTest, FloatsComeBackAsTheyWere) {
     for (const TextureSpec& spec :
-         {TextureSpec{GL_TEXTURE_2D, GL_RGBA32F, 5, 3, 1, 1}, TextureSpec{GL_TEXTURE_2D_ARRAY, GL_R32F, 4, 3, 5, 1},
+         {TextureSpec{GL_TEXTURE_2D, GL_RGBA32F, 5, 3, 1, 1},
+          TextureSpec{GL_TEXTURE_2D_ARRAY, GL_R32F, 4, 3, 5, 1},
           TextureSpec{GL_TEXTURE_3D, GL_RG32F, 3, 4, 5, 1},
           TextureSpec{GL_TEXTURE_2D, GL_DEPTH_COMPONENT32F, 7, 2, 1, 1}}) {
         Texture texture("ramp", spec);
@@ -51,7 +52,8 @@ TEST_P(TextureTest, NormalisedIntegersBecomeFractions) {
 
 TEST_P(TextureTest, IntegersComeBackAsTheyWere) {
     Texture texture("integers", {.internalFormat = GL_RG32UI, .width = 3, .height = 2});
-    const std::vector<uint32_t> values = {0, 1, 0xffffffffu, 7, 8, 9, 10, 11, 12, 13, 14, 0x80000000u};
+    const std::vector<uint32_t> values = {0,  1,  0xffffffffu, 7,  8,  9,
+                                          10, 11, 12,          13, 14, 0x80000000u};
     texture.write(values.data(), values.size() * 4);
     EXPECT_EQ(readIntegers(texture), values);
     texture.clearInteger(3, 4);
@@ -64,9 +66,12 @@ TEST_P(TextureTest, IntegersComeBackAsTheyWere) {
 }
 
 TEST_P(TextureTest, ClearReachesEveryMip) {
-    Texture texture(
-        "mips",
-        {.target = GL_TEXTURE_3D, .internalFormat = GL_RGBA16F, .width = 4, .height = 4, .depth = 4, .mips = 3});
+    Texture texture("mips", {.target = GL_TEXTURE_3D,
+                             .internalFormat = GL_RGBA16F,
+                             .width = 4,
+                             .height = 4,
+                             .depth = 4,
+                             .mips = 3});
     texture.clear(0.5f, 1.0f, 2.0f, 4.0f);
     for (int mip = 0; mip < 3; ++mip) {
         const std::vector<float> values = readFloats(texture, mip);
@@ -79,15 +84,20 @@ TEST_P(TextureTest, ClearReachesEveryMip) {
 }
 
 TEST_P(TextureTest, ARegionIsWrittenAlone) {
-    Texture texture(
-        "region",
-        {.target = GL_TEXTURE_2D_ARRAY, .internalFormat = GL_R32F, .width = 4, .height = 4, .depth = 2, .mips = 2});
+    Texture texture("region", {.target = GL_TEXTURE_2D_ARRAY,
+                               .internalFormat = GL_R32F,
+                               .width = 4,
+                               .height = 4,
+                               .depth = 2,
+                               .mips = 2});
     texture.clear(0.0f);
     const float two[2] = {1.0f, 2.0f};
     texture.write({.mip = 1, .x = 1, .y = 0, .z = 1, .width = 1, .height = 2}, two, sizeof two);
     EXPECT_EQ(readFloats(texture, 1), (std::vector<float>{0, 0, 0, 0, 0, 1, 0, 2}));
     EXPECT_EQ(readFloats(texture, 0), std::vector<float>(32, 0.0f));
-    EXPECT_THROW(texture.write({.mip = 1, .x = 1, .y = 0, .width = 2, .height = 1}, two, sizeof two), CheckFailure);
+    EXPECT_THROW(
+        texture.write({.mip = 1, .x = 1, .y = 0, .width = 2, .height = 1}, two, sizeof two),
+        CheckFailure);
     EXPECT_THROW(texture.write({.mip = 2, .width = 1, .height = 1}, two, 4), CheckFailure);
     EXPECT_THROW(texture.write({.width = 2, .height = 1}, two, 4), CheckFailure);
 }
@@ -103,9 +113,12 @@ TEST_P(TextureTest, MipsAreMeans) {
 }
 
 TEST_P(TextureTest, AViewSeesTheSameTexels) {
-    Texture array(
-        "array",
-        {.target = GL_TEXTURE_2D_ARRAY, .internalFormat = GL_R32F, .width = 4, .height = 2, .depth = 3, .mips = 2});
+    Texture array("array", {.target = GL_TEXTURE_2D_ARRAY,
+                            .internalFormat = GL_R32F,
+                            .width = 4,
+                            .height = 2,
+                            .depth = 3,
+                            .mips = 2});
     array.clear(1.0f);
     Texture layer = array.view("layer", GL_TEXTURE_2D, GL_R32F, 0, 1, 1, 1);
     EXPECT_EQ(layer.bytes(), 0) << "storage is counted once";
@@ -114,7 +127,8 @@ TEST_P(TextureTest, AViewSeesTheSameTexels) {
     std::fill(expected.begin() + 8, expected.begin() + 16, 0.125f);
     EXPECT_EQ(readFloats(array), expected);
     const Texture bits = array.view("bits", GL_TEXTURE_2D, GL_R32UI, 0, 1, 1, 1);
-    EXPECT_EQ(readIntegers(bits), std::vector<uint32_t>(8, 0x3e000000u)) << "the bits of 1/8 in IEEE 754";
+    EXPECT_EQ(readIntegers(bits), std::vector<uint32_t>(8, 0x3e000000u))
+        << "the bits of 1/8 in IEEE 754";
     EXPECT_EQ(array.view("mip", GL_TEXTURE_2D_ARRAY, GL_R32F, 1, 1, 0, 3).spec().width, 2);
     array = {};
     EXPECT_EQ(readFloats(layer), std::vector<float>(8, 0.125f)) << "a view keeps the storage";
@@ -137,13 +151,20 @@ TEST_P(TextureTest, FullChainsEndAtOneTexel) {
     EXPECT_EQ(fullMipCount(2, 1), 2);
     EXPECT_EQ(fullMipCount(1280, 720), 11);
     EXPECT_EQ(fullMipCount(9, 9, 17), 5);
-    EXPECT_EQ(textureBytes(
-                  {.target = GL_TEXTURE_3D, .internalFormat = GL_R32F, .width = 4, .height = 4, .depth = 4, .mips = 3}),
+    EXPECT_EQ(textureBytes({.target = GL_TEXTURE_3D,
+                            .internalFormat = GL_R32F,
+                            .width = 4,
+                            .height = 4,
+                            .depth = 4,
+                            .mips = 3}),
               4 * (64 + 8 + 1));
-    EXPECT_EQ(
-        textureBytes(
-            {.target = GL_TEXTURE_2D_ARRAY, .internalFormat = GL_R32F, .width = 4, .height = 4, .depth = 4, .mips = 3}),
-        4 * (64 + 16 + 4));
+    EXPECT_EQ(textureBytes({.target = GL_TEXTURE_2D_ARRAY,
+                            .internalFormat = GL_R32F,
+                            .width = 4,
+                            .height = 4,
+                            .depth = 4,
+                            .mips = 3}),
+              4 * (64 + 16 + 4));
 }
 
 TEST_P(TextureTest, MovedFromIsEmpty) {
@@ -158,8 +179,11 @@ TEST_P(TextureTest, MovedFromIsEmpty) {
 
 /// GL counts rows from the bottom, images from the top.
 TEST_P(TextureTest, AnImageHasTheTopRowFirst) {
-    Texture texture("rows",
-                    {.target = GL_TEXTURE_2D_ARRAY, .internalFormat = GL_R32F, .width = 2, .height = 3, .depth = 2});
+    Texture texture("rows", {.target = GL_TEXTURE_2D_ARRAY,
+                             .internalFormat = GL_R32F,
+                             .width = 2,
+                             .height = 3,
+                             .depth = 2});
     const std::vector<float> values = ramp(12, 1.0f);
     texture.write(values.data(), 48);
     const Image image = readImage(texture, 1);

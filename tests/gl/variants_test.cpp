@@ -21,7 +21,8 @@ TEST_P(VariantsTest, EveryListedVariantCompiles) {
     library.variants().forEachVariant([&](const ProgramRequest& request) {
         const auto begin = std::chrono::steady_clock::now();
         const Result<const Program*> program = library.program(request);
-        const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+        const double seconds =
+            std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
         if (seconds > slowest) slowestName = request.describe();
         slowest = std::max(slowest, seconds);
         EXPECT_TRUE(program.ok()) << (program ? "" : program.message());

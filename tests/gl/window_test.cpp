@@ -13,7 +13,9 @@ namespace {
 
 using ::testing::HasSubstr;
 
-bool hasDisplay() { return std::getenv("DISPLAY") != nullptr || std::getenv("WAYLAND_DISPLAY") != nullptr; }
+bool hasDisplay() {
+    return std::getenv("DISPLAY") != nullptr || std::getenv("WAYLAND_DISPLAY") != nullptr;
+}
 
 WindowOptions hidden() {
     WindowOptions options;

@@ -60,7 +60,8 @@ struct ProbePass {
 } // namespace
 
 dmat4 lookingAlong(const dvec3& position, const dvec3& forward) {
-    const dvec3 z = -glm::normalize(forward), pole = std::abs(z.y) < 0.9 ? dvec3(0, 1, 0) : dvec3(1, 0, 0);
+    const dvec3 z = -glm::normalize(forward),
+                pole = std::abs(z.y) < 0.9 ? dvec3(0, 1, 0) : dvec3(1, 0, 0);
     const dvec3 x = glm::normalize(glm::cross(pole, z));
     return dmat4(dvec4(x, 0), dvec4(glm::cross(z, x), 0), dvec4(z, 0), dvec4(position, 1));
 }
@@ -73,12 +74,14 @@ int SceneMaker::node(const dmat4& worldFromNode) {
     return int(scene.nodes.size()) - 1;
 }
 
-int SceneMaker::primitive(PrimitiveShape shape, const dvec3& size, const dvec3& position, const dquat& rotation, const Material& material) {
+int SceneMaker::primitive(PrimitiveShape shape, const dvec3& size, const dvec3& position,
+                          const dquat& rotation, const Material& material) {
     Primitive what;
     what.shape = shape;
     what.size = size;
     const int index = mesh(makePrimitive(what), material);
-    scene.nodes[size_t(index)].matrix = glm::translate(dmat4(1), position) * glm::mat4_cast(rotation);
+    scene.nodes[size_t(index)].matrix =
+        glm::translate(dmat4(1), position) * glm::mat4_cast(rotation);
     return index;
 }
 
@@ -119,13 +122,15 @@ int SceneMaker::directionalLight(float lux, const dvec3& travel, float angularRa
 }
 
 void SceneMaker::moveNode(int index, const dvec3& by) {
-    *scene.nodes[size_t(index)].matrix = glm::translate(dmat4(1), by) * *scene.nodes[size_t(index)].matrix;
+    *scene.nodes[size_t(index)].matrix =
+        glm::translate(dmat4(1), by) * *scene.nodes[size_t(index)].matrix;
     scene.versions.transforms = nextVersion();
 }
 
 void SceneMaker::touch() {
     SceneVersions& v = scene.versions;
-    v.structure = v.transforms = v.meshes = v.materials = v.textures = v.lights = v.environment = nextVersion();
+    v.structure = v.transforms = v.meshes = v.materials = v.textures = v.lights = v.environment =
+        nextVersion();
     scene.environment.version = nextVersion();
 }
 
@@ -170,18 +175,22 @@ void LightsTest::forgetEverything() {
 
 std::string LightsTest::statusOf(std::string_view name) {
     for (const fg::PassReport& pass : executor_->report().passes)
-        if (pass.name == name) return std::string(fg::statusName(pass.status)) + (pass.status == fg::PassStatus::Skipped ? ": " + std::string(pass.reason) : "");
+        if (pass.name == name)
+            return std::string(fg::statusName(pass.status)) +
+                   (pass.status == fg::PassStatus::Skipped ? ": " + std::string(pass.reason) : "");
     return "not there";
 }
 
-void LightsTest::lookOnce(SceneMaker& maker, const std::vector<Probe>& probes, const ProbeOptions& options, uint32_t frame, std::vector<dvec4>& sums) {
+void LightsTest::lookOnce(SceneMaker& maker, const std::vector<Probe>& probes,
+                          const ProbeOptions& options, uint32_t frame, std::vector<dvec4>& sums) {
     Camera camera;
     camera.znear = 1e-3 * options.sceneRadius;
     camera.type = options.orthographic ? CameraType::Orthographic : CameraType::Perspective;
     camera.ymag = options.sceneRadius;
     ViewRequest request;
     request.camera = &camera;
-    request.worldFromCamera = glm::translate(dmat4(1), options.eye) * glm::rotate(dmat4(1), options.yaw, dvec3(0, 1, 0));
+    request.worldFromCamera =
+        glm::translate(dmat4(1), options.eye) * glm::rotate(dmat4(1), options.yaw, dvec3(0, 1, 0));
     request.sceneRadius = options.sceneRadius;
     request.width = 64;
     request.height = 48;
@@ -199,19 +208,29 @@ void LightsTest::lookOnce(SceneMaker& maker, const std::vector<Probe>& probes, c
         data.push_back(vec4(vec3(probe.position), 1));
         data.push_back(vec4(vec3(probe.normal), 0));
     }
-    struct Upload { fg::BufferHandle probes; const vec4* data; size_t bytes; };
-    const Upload& upload = graph.addPass<Upload>("test.probes",
+    struct Upload {
+        fg::BufferHandle probes;
+        const vec4* data;
+        size_t bytes;
+    };
+    const Upload& upload = graph.addPass<Upload>(
+        "test.probes",
         [&](fg::Builder& builder, Upload& u) {
             u.data = data.data();
             u.bytes = data.size() * sizeof(vec4);
-            u.probes = builder.create("test.probes", fg::BufferDesc{u.bytes}, fg::Access::TransferWrite);
+            u.probes =
+                builder.create("test.probes", fg::BufferDesc{u.bytes}, fg::Access::TransferWrite);
         },
-        [](const Upload& u, fg::PassContext& context) { context.upload(u.probes, 0, u.data, u.bytes); });
-    const ProbePass& pass = graph.addPass<ProbePass>("test.look",
+        [](const Upload& u, fg::PassContext& context) {
+            context.upload(u.probes, 0, u.data, u.bytes);
+        });
+    const ProbePass& pass = graph.addPass<ProbePass>(
+        "test.look",
         [&](fg::Builder& builder, ProbePass& p) {
             p.probes = builder.read(upload.probes);
             p.lights = readLights(builder, resources);
-            p.results = builder.create("test.results", fg::BufferDesc{probes.size() * sizeof(vec4)});
+            p.results =
+                builder.create("test.results", fg::BufferDesc{probes.size() * sizeof(vec4)});
             p.view = view;
             p.count = uint32_t(probes.size());
             p.rectSamples = options.rectSamples;
@@ -219,8 +238,13 @@ void LightsTest::lookOnce(SceneMaker& maker, const std::vector<Probe>& probes, c
         },
         [](const ProbePass& p, fg::PassContext& context) {
             auto command = context.compute("test/light_probe.comp");
-            bindLightLists(bindLights(bindView(command, p.view), p.lights), p.lights).bind("Probes", p.probes).bind("Results", p.results);
-            command.set("probeCount", int(p.count)).set("rectSamples", p.rectSamples).set("everyLight", p.everyLight).dispatchOver(p.count);
+            bindLightLists(bindLights(bindView(command, p.view), p.lights), p.lights)
+                .bind("Probes", p.probes)
+                .bind("Results", p.results);
+            command.set("probeCount", int(p.count))
+                .set("rectSamples", p.rectSamples)
+                .set("everyLight", p.everyLight)
+                .dispatchOver(p.count);
         });
     graph.markOutput(pass.results);
     graph.markOutput(resources.clusters);
@@ -230,7 +254,9 @@ void LightsTest::lookOnce(SceneMaker& maker, const std::vector<Probe>& probes, c
     std::vector<vec4> results(probes.size());
     std::memcpy(results.data(), bytes.data(), results.size() * sizeof(vec4));
     for (size_t i = 0; i < results.size(); ++i) {
-        for (int c = 0; c < 4; ++c) ASSERT_TRUE(std::isfinite(results[i][c]) && results[i][c] >= 0) << "probe " << i << ", value " << c << ": " << results[i][c];
+        for (int c = 0; c < 4; ++c)
+            ASSERT_TRUE(std::isfinite(results[i][c]) && results[i][c] >= 0)
+                << "probe " << i << ", value " << c << ": " << results[i][c];
         sums[i] += dvec4(results[i]);
     }
     const std::vector<std::byte> lists = executor_->readBuffer(resources.clusters);
@@ -238,7 +264,8 @@ void LightsTest::lookOnce(SceneMaker& maker, const std::vector<Probe>& probes, c
     std::memcpy(clusterWords_.data(), lists.data(), clusterWords_.size() * 4);
 }
 
-std::vector<Seen> LightsTest::look(SceneMaker& maker, const std::vector<Probe>& probes, const ProbeOptions& options) {
+std::vector<Seen> LightsTest::look(SceneMaker& maker, const std::vector<Probe>& probes,
+                                   const ProbeOptions& options) {
     std::vector<dvec4> sums(probes.size(), dvec4(0));
     for (uint32_t frame = 0; frame < options.frames; ++frame) {
         lookOnce(maker, probes, options, options.firstFrame + frame, sums);

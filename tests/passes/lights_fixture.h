@@ -26,7 +26,7 @@ struct Probe {
 
 /// What a probe sees, first channel.
 struct Seen {
-    float lit = 0;        // sum over the lights of illuminance · cosine · visibility (cosine 1 in media)
+    float lit = 0; // sum over the lights of illuminance · cosine · visibility (cosine 1 in media)
     float open = 0;       // the same without shadows
     float clustered = 0;  // `lit` through the light lists
     float visibility = 0; // of light 0
@@ -38,7 +38,8 @@ public:
     Scene scene;
     int node(const dmat4& worldFromNode);
     /// A primitive with a material of its own; returns its node.
-    int primitive(PrimitiveShape shape, const dvec3& size, const dvec3& position, const dquat& rotation = {1, 0, 0, 0}, const Material& material = {});
+    int primitive(PrimitiveShape shape, const dvec3& size, const dvec3& position,
+                  const dquat& rotation = {1, 0, 0, 0}, const Material& material = {});
     int mesh(Mesh mesh, const Material& material = {});
     int light(const Light& light, const dmat4& worldFromNode);
     int pointLight(float candela, const dvec3& position, float radius = 0, float range = 0);
@@ -53,10 +54,10 @@ dmat4 lookingAlong(const dvec3& position, const dvec3& forward);
 
 struct ProbeOptions {
     bool converge = false;
-    uint32_t frames = 1;      // averaged
+    uint32_t frames = 1; // averaged
     uint32_t firstFrame = 0;
-    int rectSamples = 1;      // points a side on rect lights
-    bool everyLight = true;   // false: `lit` and `open` stay 0, only the lists are used
+    int rectSamples = 1;    // points a side on rect lights
+    bool everyLight = true; // false: `lit` and `open` stay 0, only the lists are used
     dvec3 eye{0, 0, 20};
     double yaw = 0;
     double sceneRadius = 10;
@@ -67,7 +68,8 @@ class LightsTest : public GlTest {
 protected:
     void SetUp() override;
     void TearDown() override;
-    std::vector<Seen> look(SceneMaker& maker, const std::vector<Probe>& probes, const ProbeOptions& options = {});
+    std::vector<Seen> look(SceneMaker& maker, const std::vector<Probe>& probes,
+                           const ProbeOptions& options = {});
     /// Starts again as a new renderer would.
     void forgetEverything();
     LightSystem& lights() { return *lights_; }
@@ -78,7 +80,8 @@ protected:
     const std::vector<uint32_t>& clusterWords() const { return clusterWords_; }
 
 private:
-    void lookOnce(SceneMaker& maker, const std::vector<Probe>& probes, const ProbeOptions& options, uint32_t frame, std::vector<dvec4>& sums);
+    void lookOnce(SceneMaker& maker, const std::vector<Probe>& probes, const ProbeOptions& options,
+                  uint32_t frame, std::vector<dvec4>& sums);
     std::optional<gl::ShaderLibrary> library_;
     std::optional<fg::Executor> executor_;
     std::optional<GpuScene> gpuScene_;

@@ -24,7 +24,8 @@ TEST_P(LightsOnPoints, PointLightIsTheInverseSquareOverSixDecades) {
     maker.pointLight(100, {0, 0, 0});
     maker.pointLight(0, {1000, 0, 0}); // makes the scene large, sends nothing
     std::vector<Probe> probes;
-    for (double d = 0.05; d < 1e3; d *= 1.7) probes.push_back({glm::normalize(dvec3(1, -2, 0.5)) * d, {0, 0, 0}});
+    for (double d = 0.05; d < 1e3; d *= 1.7)
+        probes.push_back({glm::normalize(dvec3(1, -2, 0.5)) * d, {0, 0, 0}});
     const std::vector<Seen> seen = look(maker, probes);
     for (size_t i = 0; i < probes.size(); ++i) {
         const double d = glm::length(probes[i].position);
@@ -46,7 +47,8 @@ TEST_P(LightsOnPoints, RangeIsTheExtensionsWindow) {
 }
 
 TEST_P(LightsOnPoints, SpotConeIsTheExtensionsFormula) {
-    for (const auto& [inner, outer] : {std::pair(0.2, 0.5), std::pair(0.0, kPi / 4), std::pair(0.3, 1.5), std::pair(0.4, 0.4)}) {
+    for (const auto& [inner, outer] :
+         {std::pair(0.2, 0.5), std::pair(0.0, kPi / 4), std::pair(0.3, 1.5), std::pair(0.4, 0.4)}) {
         SceneMaker maker;
         Light torch;
         torch.type = LightType::Spot;
@@ -59,13 +61,16 @@ TEST_P(LightsOnPoints, SpotConeIsTheExtensionsFormula) {
         std::vector<double> angles;
         for (double angle = 0.01; angle < 1.56; angle += 0.05) {
             angles.push_back(angle);
-            probes.push_back({dvec3(frame * dvec4(2 * std::sin(angle), 0, -2 * std::cos(angle), 1)), {0, 0, 0}});
+            probes.push_back(
+                {dvec3(frame * dvec4(2 * std::sin(angle), 0, -2 * std::cos(angle), 1)), {0, 0, 0}});
         }
         const std::vector<Seen> seen = look(maker, probes);
         for (size_t i = 0; i < probes.size(); ++i) {
-            const double scale = 1 / std::max(0.001, std::cos(inner) - std::cos(outer)), offset = -std::cos(outer) * scale;
+            const double scale = 1 / std::max(0.001, std::cos(inner) - std::cos(outer)),
+                         offset = -std::cos(outer) * scale;
             const double attenuation = std::clamp(std::cos(angles[i]) * scale + offset, 0.0, 1.0);
-            EXPECT_NEAR(double(seen[i].lit), 25 * attenuation * attenuation, 25 * 2e-3) << "cone " << inner << " to " << outer << ", angle " << angles[i];
+            EXPECT_NEAR(double(seen[i].lit), 25 * attenuation * attenuation, 25 * 2e-3)
+                << "cone " << inner << " to " << outer << ", angle " << angles[i];
         }
     }
 }
@@ -73,7 +78,10 @@ TEST_P(LightsOnPoints, SpotConeIsTheExtensionsFormula) {
 TEST_P(LightsOnPoints, DirectionalLightIsLuxTimesCosine) {
     SceneMaker maker;
     maker.directionalLight(20, {1, -1, 0});
-    const std::vector<Seen> seen = look(maker, {{{5, 5, 5}, kUp}, {{-900, 3, 0}, {-1, 0, 0}}, {{0, 0, 0}, {1, 0, 0}}, {{0, 0, 0}, {0, 0, 0}}});
+    const std::vector<Seen> seen = look(maker, {{{5, 5, 5}, kUp},
+                                                {{-900, 3, 0}, {-1, 0, 0}},
+                                                {{0, 0, 0}, {1, 0, 0}},
+                                                {{0, 0, 0}, {0, 0, 0}}});
     EXPECT_NEAR(double(seen[0].lit), 20 / std::sqrt(2), 1e-4);
     EXPECT_NEAR(double(seen[1].lit), 20 / std::sqrt(2), 1e-4);
     EXPECT_EQ(seen[2].lit, 0.0f);
@@ -81,10 +89,12 @@ TEST_P(LightsOnPoints, DirectionalLightIsLuxTimesCosine) {
 }
 
 /// Irradiance from a Lambertian polygon of radiance 1 wholly above the horizon (Lambert's formula).
-double polygonIrradiance(const std::vector<dvec3>& corners, const dvec3& point, const dvec3& normal) {
+double polygonIrradiance(const std::vector<dvec3>& corners, const dvec3& point,
+                         const dvec3& normal) {
     dvec3 sum(0);
     for (size_t i = 0; i < corners.size(); ++i) {
-        const dvec3 a = glm::normalize(corners[i] - point), b = glm::normalize(corners[(i + 1) % corners.size()] - point);
+        const dvec3 a = glm::normalize(corners[i] - point),
+                    b = glm::normalize(corners[(i + 1) % corners.size()] - point);
         sum += std::acos(glm::dot(a, b)) * glm::normalize(glm::cross(a, b));
     }
     return 0.5 * std::abs(glm::dot(sum, normal));
@@ -92,7 +102,8 @@ double polygonIrradiance(const std::vector<dvec3>& corners, const dvec3& point, 
 
 /// A rect light of 2 × 1 m, three metres up, tilted, its node scaled by (1.5, 0.8, 3).
 struct Panel {
-    dmat4 node = lookingAlong({0.5, 3, 0}, {0.2, -1, 0.1}) * glm::scale(dmat4(1), dvec3(1.5, 0.8, 3));
+    dmat4 node =
+        lookingAlong({0.5, 3, 0}, {0.2, -1, 0.1}) * glm::scale(dmat4(1), dvec3(1.5, 0.8, 3));
     std::vector<dvec3> corners;
     std::vector<Probe> probes;
     SceneMaker maker;
@@ -102,7 +113,8 @@ struct Panel {
         panel.size = {2, 1};
         panel.radiance = vec3(10);
         maker.light(panel, node);
-        for (const dvec2& c : {dvec2(-1, -0.5), dvec2(1, -0.5), dvec2(1, 0.5), dvec2(-1, 0.5)}) corners.emplace_back(node * dvec4(c, 0, 1));
+        for (const dvec2& c : {dvec2(-1, -0.5), dvec2(1, -0.5), dvec2(1, 0.5), dvec2(-1, 0.5)})
+            corners.emplace_back(node * dvec4(c, 0, 1));
         for (double x = -4; x <= 4; x += 0.5) probes.push_back({{x, 0, 0.3 * x}, kUp});
     }
 };
@@ -115,7 +127,9 @@ TEST_P(LightsOnPoints, RectLightOnAPlaneIsLambertsFormula) {
     probes.push_back({{0.5, 6, 0}, {0, -1, 0}}); // behind: one-sided
     const std::vector<Seen> seen = look(panel.maker, probes, options);
     for (size_t i = 0; i < panel.probes.size(); ++i)
-        EXPECT_NEAR(double(seen[i].lit) / (10 * polygonIrradiance(panel.corners, probes[i].position, kUp)), 1.0, 2e-3);
+        EXPECT_NEAR(double(seen[i].lit) /
+                        (10 * polygonIrradiance(panel.corners, probes[i].position, kUp)),
+                    1.0, 2e-3);
     EXPECT_EQ(seen.back().lit, 0.0f);
 }
 
@@ -126,7 +140,9 @@ TEST_P(LightsOnPoints, RectLightAveragedOverFramesIsLambertsFormula) {
     options.frames = 512;
     const std::vector<Seen> seen = look(panel.maker, panel.probes, options);
     for (size_t i = 0; i < panel.probes.size(); ++i)
-        EXPECT_NEAR(double(seen[i].lit) / (10 * polygonIrradiance(panel.corners, panel.probes[i].position, kUp)), 1.0, 5e-3);
+        EXPECT_NEAR(double(seen[i].lit) /
+                        (10 * polygonIrradiance(panel.corners, panel.probes[i].position, kUp)),
+                    1.0, 5e-3);
 }
 
 TEST_P(LightsOnPoints, BallAndSunAveragedOverFramesAreTheirClosedForms) {
@@ -136,7 +152,8 @@ TEST_P(LightsOnPoints, BallAndSunAveragedOverFramesAreTheirClosedForms) {
     ProbeOptions options;
     options.converge = true;
     options.frames = 8192;
-    const std::vector<Probe> probes = {{{0, 0, 0}, kUp}, {{1, 0, 2}, kUp}, {{3, 1, 0}, glm::normalize(dvec3(-1, 0.3, 0))}};
+    const std::vector<Probe> probes = {
+        {{0, 0, 0}, kUp}, {{1, 0, 2}, kUp}, {{3, 1, 0}, glm::normalize(dvec3(-1, 0.3, 0))}};
     const std::vector<Seen> ball = look(maker, probes, options);
     for (size_t i = 0; i < probes.size(); ++i) {
         const dvec3 d = dvec3(0, 2, 0) - probes[i].position;
@@ -146,7 +163,8 @@ TEST_P(LightsOnPoints, BallAndSunAveragedOverFramesAreTheirClosedForms) {
     // A sun with a disc: E lux on a surface that faces its centre, E·cosθ on one that sees the whole disc.
     SceneMaker sunny;
     sunny.directionalLight(20, {1, -1, 0}, 0.3f);
-    const std::vector<Seen> sun = look(sunny, {{{0, 0, 0}, glm::normalize(dvec3(-1, 1, 0))}, {{0, 0, 0}, kUp}}, options);
+    const std::vector<Seen> sun =
+        look(sunny, {{{0, 0, 0}, glm::normalize(dvec3(-1, 1, 0))}, {{0, 0, 0}, kUp}}, options);
     EXPECT_NEAR(double(sun[0].lit), 20, 20 * 2e-3);
     EXPECT_NEAR(double(sun[1].lit), 20 / std::sqrt(2), 20 * 2e-3);
 }
@@ -168,7 +186,12 @@ TEST_P(LightsOnPoints, EverythingIsFiniteAtTheLightItself) {
         options.converge = converge;
         options.eye = {0, 0, 0};
         // look() asserts that all values are finite and none is negative.
-        const std::vector<Seen> seen = look(maker, {{{0, 0, 0}, {0, 0, 0}}, {{0, 0, 0}, kUp}, {{1e-20, 0, 0}, {0, 0, 0}}, {{1e-4, 0, 0}, {0, 0, 0}}}, options);
+        const std::vector<Seen> seen = look(maker,
+                                            {{{0, 0, 0}, {0, 0, 0}},
+                                             {{0, 0, 0}, kUp},
+                                             {{1e-20, 0, 0}, {0, 0, 0}},
+                                             {{1e-4, 0, 0}, {0, 0, 0}}},
+                                            options);
         EXPECT_GT(seen[3].open, 0.0f);
     }
 }
@@ -214,7 +237,8 @@ TEST_P(LightsOnPoints, EnvironmentIsItsLights) {
     ProbeOptions options;
     options.converge = true;
     options.frames = 256;
-    const std::vector<Seen> surface = look(maker, {{{0, 0, 0}, glm::normalize(dvec3(1, 2, 3))}}, options);
+    const std::vector<Seen> surface =
+        look(maker, {{{0, 0, 0}, glm::normalize(dvec3(1, 2, 3))}}, options);
     EXPECT_NEAR(double(surface[0].lit), 2 * kPi, 2 * kPi * 3e-3) << "πL";
 }
 
@@ -227,8 +251,13 @@ struct ManyLights {
     explicit ManyLights(float range, float scale = 1, double decades = 0.5) {
         std::mt19937 random{uint32_t(seed())};
         std::uniform_real_distribution<double> unit(-1, 1);
-        const auto point = [&] { return dvec3(unit(random) * 20, unit(random) * 10, unit(random) * 20) * double(scale); };
-        for (int i = 0; i < 1000; ++i) maker.pointLight(scale * scale * 1.5f * float(std::pow(10.0, 0.5 * decades * (unit(random) - 1))), point(), 0, range * scale);
+        const auto point = [&] {
+            return dvec3(unit(random) * 20, unit(random) * 10, unit(random) * 20) * double(scale);
+        };
+        for (int i = 0; i < 1000; ++i)
+            maker.pointLight(scale * scale * 1.5f *
+                                 float(std::pow(10.0, 0.5 * decades * (unit(random) - 1))),
+                             point(), 0, range * scale);
         for (int i = 0; i < 1024; ++i) probes.push_back({point(), i % 2 ? kUp : dvec3(0)});
         options.eye = dvec3(0, 0, 25) * double(scale);
         options.sceneRadius = 30 * double(scale);
@@ -303,8 +332,11 @@ TEST_P(LightsOnPoints, ListsSaveTimeWithManyLights) {
     std::mt19937 random{uint32_t(seed())};
     std::uniform_real_distribution<double> unit(-1, 1);
     for (int i = 0; i < 4096; ++i) {
-        const double distance = 6 + 38 * std::abs(unit(random)); // metres before the camera, whose half angle is 0.4 high
-        many.probes.push_back({many.options.eye + dvec3(0.5 * unit(random), 0.4 * unit(random), -1) * distance, kUp});
+        const double distance =
+            6 +
+            38 * std::abs(unit(random)); // metres before the camera, whose half angle is 0.4 high
+        many.probes.push_back(
+            {many.options.eye + dvec3(0.5 * unit(random), 0.4 * unit(random), -1) * distance, kUp});
     }
     const auto timeOf = [&](int minimum) {
         lights().lightSettings().clusterMinimum = minimum;
@@ -313,12 +345,16 @@ TEST_P(LightsOnPoints, ListsSaveTimeWithManyLights) {
             many.options.eye.x += 1e-3; // lists are made anew
             const auto start = std::chrono::steady_clock::now();
             look(many.maker, many.probes, many.options);
-            least = std::min(least, std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count());
+            least = std::min(least, std::chrono::duration<double, std::milli>(
+                                        std::chrono::steady_clock::now() - start)
+                                        .count());
         }
         return least;
     };
     const double withLists = timeOf(16), withoutLists = timeOf(100000);
-    std::printf("4096 probes and 1000 lights, a frame: %.1f ms with lists, making them included, %.1f ms without\n", withLists, withoutLists);
+    std::printf(
+        "4096 probes and 1000 lights, a frame: %.1f ms with lists, making them included, %.1f ms without\n",
+        withLists, withoutLists);
     EXPECT_LT(withLists, withoutLists);
 }
 

@@ -37,7 +37,8 @@ TEST_P(SoftShadows, SphereLightHasThePenumbraOfItsDiscOnAverage) {
     const std::vector<Seen> seen = look(maker, probes, options);
     double worst = 0;
     for (size_t i = 0; i < probes.size(); ++i) {
-        const double expected = discPart(probes[i].position.x / radius), measured = double(seen[i].lit / seen[i].open);
+        const double expected = discPart(probes[i].position.x / radius),
+                     measured = double(seen[i].lit / seen[i].open);
         worst = std::max(worst, std::abs(measured - expected));
     }
     std::printf("worst error of the visible part %.4f\n", worst);
@@ -56,7 +57,9 @@ TEST_P(SoftShadows, SunAndRectHaveTheirPenumbrasOnAverage) {
         panel.type = LightType::Rect;
         panel.radiance = vec3(1);
         panel.size = vec2(float(2 * halfSize));
-        if (!sun) maker.light(panel, glm::translate(dmat4(1), dvec3(0, 8, 0)) * glm::rotate(dmat4(1), -kPi / 2, dvec3(1, 0, 0)));
+        if (!sun)
+            maker.light(panel, glm::translate(dmat4(1), dvec3(0, 8, 0)) *
+                                   glm::rotate(dmat4(1), -kPi / 2, dvec3(1, 0, 0)));
         std::vector<Probe> probes;
         for (double x = -0.4; x <= 0.4; x += 0.05) probes.push_back({{x, 0, 0}, kUp});
         ProbeOptions options;
@@ -66,8 +69,10 @@ TEST_P(SoftShadows, SunAndRectHaveTheirPenumbrasOnAverage) {
         for (size_t i = 0; i < probes.size(); ++i) {
             // The sun's disc is cut at tan(angle) = x/4; the rect, whose every part weighs almost the same here, at x.
             const double x = probes[i].position.x;
-            const double expected = sun ? discPart(std::atan(x / 4) / halfAngle) : std::clamp(0.5 + 0.5 * x / halfSize, 0.0, 1.0);
-            EXPECT_NEAR(double(seen[i].lit / seen[i].open), expected, 0.02) << (sun ? "sun" : "rect") << " at " << x;
+            const double expected = sun ? discPart(std::atan(x / 4) / halfAngle)
+                                        : std::clamp(0.5 + 0.5 * x / halfSize, 0.0, 1.0);
+            EXPECT_NEAR(double(seen[i].lit / seen[i].open), expected, 0.02)
+                << (sun ? "sun" : "rect") << " at " << x;
         }
     }
 }
@@ -88,7 +93,8 @@ TEST_P(SoftShadows, SingleFramesHaveSoftShadowsOfTheRightWidth) {
     for (size_t p = 0; p < places.size(); ++p) {
         double mean = 0;
         for (size_t z = 0; z < 64; ++z) mean += double(seen[64 * p + z].visibility) / 64;
-        EXPECT_NEAR(mean, discPart(places[p] / radius), std::abs(places[p]) > 0.5 ? 1e-6 : 0.08) << "at " << places[p];
+        EXPECT_NEAR(mean, discPart(places[p] / radius), std::abs(places[p]) > 0.5 ? 1e-6 : 0.08)
+            << "at " << places[p];
     }
 }
 

@@ -42,11 +42,14 @@ struct BoxOverFloor {
     std::vector<Probe> probes;
     dvec3 centre, half;
     double scale;
-    explicit BoxOverFloor(double s = 1) : centre(dvec3(0.3, 2, -0.2) * s), half(dvec3(1, 0.5, 1) * s), scale(s) {
+    explicit BoxOverFloor(double s = 1)
+        : centre(dvec3(0.3, 2, -0.2) * s), half(dvec3(1, 0.5, 1) * s), scale(s) {
         maker.primitive(PrimitiveShape::Plane, dvec3(16, 1, 16) * s, {0, 0, 0});
         maker.primitive(PrimitiveShape::Box, dvec3(2, 1, 2) * s, centre);
         for (int y = 0; y < kGrid; ++y)
-            for (int x = 0; x < kGrid; ++x) probes.push_back({dvec3((x + 0.5) / kGrid - 0.5, 0, (y + 0.5) / kGrid - 0.5) * 12.0 * s, kUp});
+            for (int x = 0; x < kGrid; ++x)
+                probes.push_back(
+                    {dvec3((x + 0.5) / kGrid - 0.5, 0, (y + 0.5) / kGrid - 0.5) * 12.0 * s, kUp});
     }
     [[nodiscard]] ProbeOptions options() const {
         ProbeOptions o;
@@ -78,10 +81,20 @@ struct Lamp {
 const std::vector<Lamp>& lamps() {
     static const dvec3 place(2.2, 6.1, 1.3);
     static const std::vector<Lamp> all = {
-        {"directional", [](SceneMaker& m, double) { m.directionalLight(10, -place); }, place * 100.0},
-        {"point", [](SceneMaker& m, double s) { m.pointLight(float(100 * s * s), place * s); }, place},
-        {"spot", [](SceneMaker& m, double s) { m.light(spotLight(float(100 * s * s)), lookingAlong(place * s, -place)); }, place},
-        {"wide spot", [](SceneMaker& m, double s) { m.light(spotLight(float(100 * s * s), 1.5f), lookingAlong(place * s, -place)); }, place},
+        {"directional", [](SceneMaker& m, double) { m.directionalLight(10, -place); },
+         place * 100.0},
+        {"point", [](SceneMaker& m, double s) { m.pointLight(float(100 * s * s), place * s); },
+         place},
+        {"spot",
+         [](SceneMaker& m, double s) {
+             m.light(spotLight(float(100 * s * s)), lookingAlong(place * s, -place));
+         },
+         place},
+        {"wide spot",
+         [](SceneMaker& m, double s) {
+             m.light(spotLight(float(100 * s * s), 1.5f), lookingAlong(place * s, -place));
+         },
+         place},
     };
     return all;
 }
@@ -97,7 +110,8 @@ TEST_P(ShadowsOnPoints, BoxShadowLiesWhereRaysSayAtEveryScale) {
             int dark = 0, light = 0, wrong = 0;
             for (size_t i = 0; i < world.probes.size(); ++i) {
                 // Two texels: 16 m over 512, somewhat more across the diagonal and for maps seen from near by.
-                const int truth = world.truth(world.probes[i].position, lamp.from * scale, 0.1 * scale);
+                const int truth =
+                    world.truth(world.probes[i].position, lamp.from * scale, 0.1 * scale);
                 dark += truth == 0;
                 light += truth == 1;
                 wrong += truth >= 0 && atScale[index][i].visibility != float(truth);
@@ -109,7 +123,9 @@ TEST_P(ShadowsOnPoints, BoxShadowLiesWhereRaysSayAtEveryScale) {
         }
         for (const int other : {0, 2}) {
             double difference = 0;
-            for (size_t i = 0; i < atScale[1].size(); ++i) difference += std::abs(double(atScale[other][i].visibility) - double(atScale[1][i].visibility));
+            for (size_t i = 0; i < atScale[1].size(); ++i)
+                difference += std::abs(double(atScale[other][i].visibility) -
+                                       double(atScale[1][i].visibility));
             EXPECT_LT(difference / double(atScale[1].size()), 1e-3) << lamp.name;
         }
     }
@@ -148,13 +164,17 @@ TEST_P(ShadowsOnPoints, LitPlanesHaveNoAcneAtAnyTilt) {
                 if (kind == 3) maker.pointLight(1, {0, 7, 0}, 0.2f);
                 if (kind == 4) maker.directionalLight(1, {0, -1, 0}, 0.02f);
                 std::vector<Probe> probes;
-                for (int i = 0; i < 1024; ++i) probes.push_back({rotation * dvec3(4.5 * unit(random), 0, 4.5 * unit(random)), normal});
+                for (int i = 0; i < 1024; ++i)
+                    probes.push_back(
+                        {rotation * dvec3(4.5 * unit(random), 0, 4.5 * unit(random)), normal});
                 ProbeOptions options;
                 options.converge = converge;
                 const std::vector<Seen> seen = look(maker, probes, options);
                 int acne = 0;
-                for (size_t i = 0; i < probes.size(); ++i) acne += seen[i].open > 0 && seen[i].visibility < 1;
-                EXPECT_EQ(acne, 0) << "kind " << kind << ", tilt " << tilt << ", converge " << converge;
+                for (size_t i = 0; i < probes.size(); ++i)
+                    acne += seen[i].open > 0 && seen[i].visibility < 1;
+                EXPECT_EQ(acne, 0)
+                    << "kind " << kind << ", tilt " << tilt << ", converge " << converge;
             }
         }
 }
@@ -168,7 +188,8 @@ TEST_P(ShadowsOnPoints, BallsHaveNoAcneOnTheLitSide) {
     const Mesh& mesh = maker.scene.meshes[0];
     std::vector<Probe> probes;
     for (size_t t = 0; t + 2 < mesh.indices.size(); t += 3) {
-        const dvec3 a(mesh.positions[mesh.indices[t]]), b(mesh.positions[mesh.indices[t + 1]]), c(mesh.positions[mesh.indices[t + 2]]);
+        const dvec3 a(mesh.positions[mesh.indices[t]]), b(mesh.positions[mesh.indices[t + 1]]),
+            c(mesh.positions[mesh.indices[t + 2]]);
         const dvec3 cross = glm::cross(b - a, c - a);
         if (glm::length(cross) < 1e-8) continue;
         const dvec3 normal = glm::normalize(cross);
@@ -191,7 +212,8 @@ TEST_P(ShadowsOnPoints, ShadowsTouchWhatCastsThem) {
     const gpu::ShadowView& finest = lights().shadowPlan().views.back();
     const double texel = double(finest.bias.x) * std::sqrt(2.0); // on the floor
     std::vector<Probe> probes;
-    for (int i = 0; i < 200; ++i) probes.push_back({{-2 + 0.02 * i, 0, 0.01 + (2.0 + 0.01 * i) * texel}, kUp});
+    for (int i = 0; i < 200; ++i)
+        probes.push_back({{-2 + 0.02 * i, 0, 0.01 + (2.0 + 0.01 * i) * texel}, kUp});
     for (const Seen& s : look(maker, probes)) EXPECT_EQ(s.visibility, 0.0f);
 }
 
@@ -207,7 +229,8 @@ Material chequered(SceneMaker& maker, AlphaMode mode, uint8_t alpha = 0) {
     maker.scene.images.push_back(image);
     Texture texture;
     texture.image = int(maker.scene.images.size()) - 1;
-    texture.sampler = {Filter::Nearest, Filter::Nearest, MipFilter::None, Wrap::ClampToEdge, Wrap::ClampToEdge};
+    texture.sampler = {Filter::Nearest, Filter::Nearest, MipFilter::None, Wrap::ClampToEdge,
+                       Wrap::ClampToEdge};
     maker.scene.textures.push_back(texture);
     Material material;
     material.alphaMode = mode;
@@ -218,7 +241,8 @@ Material chequered(SceneMaker& maker, AlphaMode mode, uint8_t alpha = 0) {
 TEST_P(ShadowsOnPoints, MaskedCastersLetLightThroughTheirHoles) {
     SceneMaker maker;
     maker.primitive(PrimitiveShape::Plane, {20, 1, 20}, {0, 0, 0});
-    maker.primitive(PrimitiveShape::Plane, {8, 1, 8}, {0, 2, 0}, {1, 0, 0, 0}, chequered(maker, AlphaMode::Mask));
+    maker.primitive(PrimitiveShape::Plane, {8, 1, 8}, {0, 2, 0}, {1, 0, 0, 0},
+                    chequered(maker, AlphaMode::Mask));
     maker.directionalLight(1, {0, -1, 0});
     std::vector<Probe> probes;
     for (int y = 0; y < 8; ++y)
@@ -229,7 +253,8 @@ TEST_P(ShadowsOnPoints, MaskedCastersLetLightThroughTheirHoles) {
         for (int x = 0; x < 8; ++x) {
             // Neighbours differ, whichever way the texture lies.
             if (x > 0) {
-                EXPECT_NE(seen[size_t(8 * y + x)].visibility, seen[size_t(8 * y + x - 1)].visibility);
+                EXPECT_NE(seen[size_t(8 * y + x)].visibility,
+                          seen[size_t(8 * y + x - 1)].visibility);
             }
             const float v = seen[size_t(8 * y + x)].visibility;
             EXPECT_TRUE(v == 0 || v == 1) << v;
@@ -254,7 +279,8 @@ TEST_P(ShadowsOnPoints, BlendedCastersLetTheirTransparencyThrough) {
     options.converge = true;
     options.frames = 32;
     double mean = 0;
-    for (const Seen& s : look(maker, probes, options)) mean += double(s.visibility) / double(probes.size());
+    for (const Seen& s : look(maker, probes, options))
+        mean += double(s.visibility) / double(probes.size());
     // 64,000 draws of a coin that shows "lit" 7 times in 10: four standard errors.
     EXPECT_NEAR(mean, 0.7, 4 * std::sqrt(0.7 * 0.3 / 64000));
 }
@@ -263,9 +289,11 @@ TEST_P(ShadowsOnPoints, SurfacesBlockFromBothSides) {
     for (const double turn : {0.0, kPi}) {
         SceneMaker maker;
         Material oneSided;
-        maker.primitive(PrimitiveShape::Plane, {4, 1, 4}, {0, 2, 0}, glm::angleAxis(turn, dvec3(1, 0, 0)), oneSided);
+        maker.primitive(PrimitiveShape::Plane, {4, 1, 4}, {0, 2, 0},
+                        glm::angleAxis(turn, dvec3(1, 0, 0)), oneSided);
         maker.pointLight(1, {0, 5, 0});
-        const std::vector<Seen> seen = look(maker, {{{0, 0, 0}, kUp}, {{5, 0, 0}, kUp}, {{0, 3, 0}, {0, 0, 0}}});
+        const std::vector<Seen> seen =
+            look(maker, {{{0, 0, 0}, kUp}, {{5, 0, 0}, kUp}, {{0, 3, 0}, {0, 0, 0}}});
         EXPECT_EQ(seen[0].visibility, 0.0f);
         EXPECT_EQ(seen[1].visibility, 1.0f);
         EXPECT_EQ(seen[2].visibility, 1.0f);
@@ -281,7 +309,8 @@ TEST_P(ShadowsOnPoints, PointLightShadowsInAllSixDirections) {
         for (const double sign : {-1.0, 1.0}) {
             dvec3 d(0), size(0.5);
             d[axis] = sign;
-            maker.primitive(PrimitiveShape::Box, size, lamp + 2.0 * d); // half of its side is seen under 8 degrees
+            maker.primitive(PrimitiveShape::Box, size,
+                            lamp + 2.0 * d); // half of its side is seen under 8 degrees
             for (const double aside : {-1.0, 0.0, 1.0}) {
                 dvec3 shift(0);
                 shift[(axis + 1) % 3] = aside;
@@ -289,7 +318,11 @@ TEST_P(ShadowsOnPoints, PointLightShadowsInAllSixDirections) {
                 expected.push_back(aside == 0 ? 0.0f : 1.0f);
             }
             // Edges and corners between the faces are open.
-            probes.push_back({lamp + dvec3(sign * 4, 4, axis == 0 ? 4 : axis == 1 ? -4 : 0), {0, 0, 0}});
+            probes.push_back({lamp + dvec3(sign * 4, 4,
+                                           axis == 0   ? 4
+                                           : axis == 1 ? -4
+                                                       : 0),
+                              {0, 0, 0}});
             expected.push_back(1);
         }
     maker.pointLight(1, lamp);
@@ -297,7 +330,9 @@ TEST_P(ShadowsOnPoints, PointLightShadowsInAllSixDirections) {
         ProbeOptions options;
         options.converge = converge;
         const std::vector<Seen> seen = look(maker, probes, options);
-        for (size_t i = 0; i < probes.size(); ++i) EXPECT_EQ(seen[i].visibility, expected[i]) << "probe " << i << ", converge " << converge;
+        for (size_t i = 0; i < probes.size(); ++i)
+            EXPECT_EQ(seen[i].visibility, expected[i])
+                << "probe " << i << ", converge " << converge;
     }
 }
 
@@ -310,12 +345,19 @@ TEST_P(ShadowsOnPoints, RectLightShadowsOnItsSide) {
     maker.light(panel, lookingAlong({0, 5, 0}, {0, -1, 0}));
     maker.primitive(PrimitiveShape::Plane, {20, 1, 20}, {0, 0, 0});
     maker.primitive(PrimitiveShape::Box, {1, 0.1, 1}, {0, 2.5, 0});
-    maker.primitive(PrimitiveShape::Box, {0.1, 2, 2}, {2, 4.5, 0}); // beside the panel: shadows through a side face
+    maker.primitive(PrimitiveShape::Box, {0.1, 2, 2},
+                    {2, 4.5, 0}); // beside the panel: shadows through a side face
     for (const bool converge : {false, true}) {
         ProbeOptions options;
         options.converge = converge;
         options.frames = converge ? 16 : 1;
-        const std::vector<Seen> seen = look(maker, {{{0, 0, 0}, kUp}, {{0.5, 0, 0.5}, kUp}, {{1.5, 0, 0}, kUp}, {{8, 3.5, 0}, {-1, 0, 0}}, {{-8, 3.5, 0}, {1, 0, 0}}}, options);
+        const std::vector<Seen> seen = look(maker,
+                                            {{{0, 0, 0}, kUp},
+                                             {{0.5, 0, 0.5}, kUp},
+                                             {{1.5, 0, 0}, kUp},
+                                             {{8, 3.5, 0}, {-1, 0, 0}},
+                                             {{-8, 3.5, 0}, {1, 0, 0}}},
+                                            options);
         EXPECT_EQ(seen[0].visibility, 0.0f);
         EXPECT_EQ(seen[1].visibility, 0.0f);
         EXPECT_EQ(seen[2].visibility, 1.0f);
@@ -333,24 +375,29 @@ TEST_P(ShadowsOnPoints, FogBehindAWallStaysDark) {
         for (const bool converge : {false, true}) {
             SceneMaker maker;
             maker.primitive(PrimitiveShape::Box, {8, 0.01, 8}, {0, 3, 0}, tilt);
-            if (kind == 0) maker.directionalLight(1, {0, -1, 0});
-            else maker.pointLight(1, {0, 8, 0});
+            if (kind == 0)
+                maker.directionalLight(1, {0, -1, 0});
+            else
+                maker.pointLight(1, {0, 8, 0});
             std::vector<Probe> probes;
             for (int i = 0; i < 4096; ++i) {
-                const dvec3 back = dvec3(0, 3, 0) + tilt * dvec3(4 * unit(random) - 2, -0.005, 4 * unit(random) - 2);
+                const dvec3 back = dvec3(0, 3, 0) +
+                                   tilt * dvec3(4 * unit(random) - 2, -0.005, 4 * unit(random) - 2);
                 probes.push_back({back - dvec3(0, 2 * unit(random), 0), {0, 0, 0}});
             }
             ProbeOptions options;
             options.converge = converge;
             double mean = 0;
-            for (const Seen& s : look(maker, probes, options)) mean += double(s.visibility) / double(probes.size());
+            for (const Seen& s : look(maker, probes, options))
+                mean += double(s.visibility) / double(probes.size());
             EXPECT_LT(mean, converge ? 5e-3 : 1e-3) << "kind " << kind << ", converge " << converge;
         }
 }
 
 TEST_P(ShadowsOnPoints, MapsAreDrawnAgainOnlyWhereSomethingChanged) {
     BoxOverFloor world;
-    const int first = world.maker.pointLight(10, {3, 5, 0}), second = world.maker.pointLight(10, {-3, 5, 0});
+    const int first = world.maker.pointLight(10, {3, 5, 0}),
+              second = world.maker.pointLight(10, {-3, 5, 0});
     const auto drawn = [&] {
         const uint64_t before = lights().shadowMapsDrawn();
         look(world.maker, world.probes, world.options());
@@ -380,7 +427,8 @@ TEST_P(ShadowsOnPoints, MapsAreDrawnAgainOnlyWhereSomethingChanged) {
     options.converge = true;
     look(world.maker, world.probes, options);
     EXPECT_EQ(lights().shadowMapsDrawn(), before + 12);
-    world.maker.scene.lights[size_t(world.maker.scene.nodes[size_t(first)].light)].castsShadows = false;
+    world.maker.scene.lights[size_t(world.maker.scene.nodes[size_t(first)].light)].castsShadows =
+        false;
     world.maker.scene.versions.lights = nextVersion();
     EXPECT_GE(drawn(), 6u);
     EXPECT_EQ(lights().shadowPlan().views.size(), 6u);
@@ -394,13 +442,16 @@ TEST_P(ShadowsOnPoints, CachedMapsEqualFreshOnes) {
     std::uniform_real_distribution<double> unit(-1, 1);
     ProbeOptions options = world.options();
     for (int step = 0; step < 6; ++step) {
-        if (step % 2) world.maker.moveNode(lamp, dvec3(unit(random), 0, unit(random)));
-        else options.eye += dvec3(unit(random), 0, unit(random)) * 2.0;
+        if (step % 2)
+            world.maker.moveNode(lamp, dvec3(unit(random), 0, unit(random)));
+        else
+            options.eye += dvec3(unit(random), 0, unit(random)) * 2.0;
         if (step == 4) lights().shadowSettings().localResolution = 256;
         const std::vector<Seen> kept = look(world.maker, world.probes, options);
         forgetEverything();
         const std::vector<Seen> fresh = look(world.maker, world.probes, options);
-        for (size_t i = 0; i < kept.size(); ++i) ASSERT_EQ(kept[i].lit, fresh[i].lit) << "step " << step << ", probe " << i;
+        for (size_t i = 0; i < kept.size(); ++i)
+            ASSERT_EQ(kept[i].lit, fresh[i].lit) << "step " << step << ", probe " << i;
     }
 }
 

@@ -62,7 +62,8 @@ struct Maker {
     }
     void touch() {
         SceneVersions& v = scene.versions;
-        v.structure = v.transforms = v.meshes = v.materials = v.textures = v.lights = v.media = v.environment = nextVersion();
+        v.structure = v.transforms = v.meshes = v.materials = v.textures = v.lights = v.media =
+            v.environment = nextVersion();
     }
 };
 
@@ -116,9 +117,11 @@ protected:
         for (int frame = 0; frame < options.frames; ++frame) {
             Lit one = drawFrame(maker.scene, options, uint32_t(frame));
             if (HasFatalFailure()) break;
-            if (frame == 0) sum = one;
+            if (frame == 0)
+                sum = one;
             else
-                for (auto [to, from] : {std::pair(&sum.emission, &one.emission), std::pair(&sum.direct, &one.direct)})
+                for (auto [to, from] :
+                     {std::pair(&sum.emission, &one.emission), std::pair(&sum.direct, &one.direct)})
                     for (size_t i = 0; i < to->pixels.size(); ++i) to->pixels[i] += from->pixels[i];
         }
         for (Image* image : {&sum.emission, &sum.direct})
@@ -139,7 +142,8 @@ protected:
         inputs.view = view;
         inputs.gbuffer = addGBufferPass(graph, *surfaces_, view, gbufferSettings_);
         const Bounds bounds = surfaces_->bounds();
-        const MediaFrame media = media_->beginFrame(graph, {&view, std::span(&bounds, 1), lights_->lights(), false});
+        const MediaFrame media =
+            media_->beginFrame(graph, {&view, std::span(&bounds, 1), lights_->lights(), false});
         inputs.media = media.resources;
         inputs.lights = lights_->addPasses(graph, *surfaces_, view);
         inputs.environment = &*environment_;
@@ -147,22 +151,33 @@ protected:
         inputs.terms = options.terms;
         inputs.settings = settings_;
         const SurfaceLight light = addDeferredLightingPass(graph, inputs);
-        const MediumMarch march = addMediumMarchPass(graph, media, {view, inputs.gbuffer.depth, inputs.lights, true, true});
+        const MediumMarch march = addMediumMarchPass(
+            graph, media, {view, inputs.gbuffer.depth, inputs.lights, true, true});
         TermImages images;
         if (!graph.isAbsent(light.emission))
-            images.add(bit(Term::LE), addCompositePass(graph, "composite.LE", "term.LE", light.emission, march.transmittance, march.emission));
+            images.add(bit(Term::LE),
+                       addCompositePass(graph, "composite.LE", "term.LE", light.emission,
+                                        march.transmittance, march.emission));
         if (!graph.isAbsent(light.direct))
-            images.add(bit(Term::LSE), addCompositePass(graph, "composite.LSE", "term.LSE", light.direct, march.transmittance));
-        if (march.inScatter && !graph.isAbsent(march.inScatter)) images.add(bit(Term::LVE), march.inScatter);
-        images = addBlendPass(graph, *blended_, {view, inputs.gbuffer.depth, march.transmittance, inputs.lights, inputs.media,
-                                                 inputs.environment, settings_}, images);
+            images.add(bit(Term::LSE), addCompositePass(graph, "composite.LSE", "term.LSE",
+                                                        light.direct, march.transmittance));
+        if (march.inScatter && !graph.isAbsent(march.inScatter))
+            images.add(bit(Term::LVE), march.inScatter);
+        images = addBlendPass(graph, *blended_,
+                              {view, inputs.gbuffer.depth, march.transmittance, inputs.lights,
+                               inputs.media, inputs.environment, settings_},
+                              images);
         for (uint32_t i = 0; i < images.count; ++i) graph.markOutput(images.images[i].image);
         expectDone(executor_->execute());
-        if (const fg::TextureHandle image = images.find(Term::LE)) lit.emission = executor_->readImage(image);
-        if (const fg::TextureHandle image = images.find(Term::LSE)) lit.direct = executor_->readImage(image);
-        if (const fg::TextureHandle image = images.find(Term::LVE)) lit.inScatter = executor_->readImage(image);
+        if (const fg::TextureHandle image = images.find(Term::LE))
+            lit.emission = executor_->readImage(image);
+        if (const fg::TextureHandle image = images.find(Term::LSE))
+            lit.direct = executor_->readImage(image);
+        if (const fg::TextureHandle image = images.find(Term::LVE))
+            lit.inScatter = executor_->readImage(image);
         for (const fg::PassReport& pass : executor_->report().passes) {
-            const std::string status = std::string(fg::statusName(pass.status)) + (pass.reason.empty() ? "" : ": " + std::string(pass.reason));
+            const std::string status = std::string(fg::statusName(pass.status)) +
+                                       (pass.reason.empty() ? "" : ": " + std::string(pass.reason));
             if (pass.name == "lighting.emission") lit.emissionStatus = status;
             if (pass.name == "lighting.direct") lit.directStatus = status;
             if (pass.name == "blend") lit.blendStatus = status;
@@ -181,7 +196,8 @@ protected:
         camera.yfov = 0.25 * kPi;
         ViewRequest request;
         request.camera = &camera;
-        request.worldFromCamera = glm::rotate(dmat4(1), options.tilt, dvec3(0, 1, 0)) * glm::translate(dmat4(1), dvec3(0, 0, 10));
+        request.worldFromCamera = glm::rotate(dmat4(1), options.tilt, dvec3(0, 1, 0)) *
+                                  glm::translate(dmat4(1), dvec3(0, 0, 10));
         request.sceneRadius = 20;
         request.width = request.height = kSize;
         request.frameIndex = frame;
@@ -191,7 +207,8 @@ protected:
 
     /// The point of the plane z = 0 under the centre of a pixel of the untilted parallel view.
     static dvec3 pointUnder(int x, int y) {
-        return {((x + 0.5) / kSize * 2 - 1) * kHalfHeight, (1 - (y + 0.5) / kSize * 2) * kHalfHeight, 0};
+        return {((x + 0.5) / kSize * 2 - 1) * kHalfHeight,
+                (1 - (y + 0.5) / kSize * 2) * kHalfHeight, 0};
     }
     static double centre(const Image& image, int channel = 0) {
         double sum = 0;
@@ -234,10 +251,12 @@ TEST_P(SurfaceLightTest, PointLightOnLambertIsExactInAbsoluteUnits) {
 /// receiver; sums of the configuration factor of a rectangle with a corner above the point (Howell's catalogue, B-3).
 double rectFactor(double cx, double cy, double a, double b, double h) {
     const auto corner = [&](double x, double y) {
-        const double sx = x / h, sy = y / h, rx = std::sqrt(1 + sx * sx), ry = std::sqrt(1 + sy * sy);
+        const double sx = x / h, sy = y / h, rx = std::sqrt(1 + sx * sx),
+                     ry = std::sqrt(1 + sy * sy);
         return (sx / rx * std::atan(sy / rx) + sy / ry * std::atan(sx / ry)) / (2 * kPi);
     };
-    return corner(cx + a, cy + b) - corner(cx - a, cy + b) - corner(cx + a, cy - b) + corner(cx - a, cy - b);
+    return corner(cx + a, cy + b) - corner(cx - a, cy + b) - corner(cx + a, cy - b) +
+           corner(cx - a, cy - b);
 }
 
 Maker rectScene() {
@@ -283,7 +302,8 @@ TEST_P(SurfaceLightTest, WhiteLambertInAWhiteEnvironmentIsWhite) {
     expectDone(registry_.assign("shadows.enabled=false"));
     expectDone(registry_.assign("environment.lights=64"));
     const Lit lit = draw(maker, {.frames = 256});
-    for (int channel = 0; channel < 3; ++channel) EXPECT_NEAR(centre(lit.direct, channel) / (1 << channel), 1, 2e-3);
+    for (int channel = 0; channel < 3; ++channel)
+        EXPECT_NEAR(centre(lit.direct, channel) / (1 << channel), 1, 2e-3);
     EXPECT_NEAR(centre(draw(maker).direct), 1, 0.03); // one frame of 64 fixed lights
     // The plane does not shade itself.
     expectDone(registry_.assign("shadows.enabled=true"));
@@ -304,11 +324,14 @@ double metalAlbedo(double roughness, double cosView) {
         const double stretch = a / (std::cos(t) * std::cos(t) + a2 * std::sin(t) * std::sin(t));
         for (int j = 0; j < kSteps; ++j) {
             const double azimuth = (j + 0.5) / kSteps * kPi;
-            const dvec3 half(std::sin(polar) * std::cos(azimuth), std::sin(polar) * std::sin(azimuth), std::cos(polar));
+            const dvec3 half(std::sin(polar) * std::cos(azimuth),
+                             std::sin(polar) * std::sin(azimuth), std::cos(polar));
             const dvec3 light = 2 * glm::dot(view, half) * half - view;
             if (light.z <= 0 || glm::dot(view, half) <= 0) continue;
             const double d = a2 / (kPi * std::pow(half.z * half.z * (a2 - 1) + 1, 2));
-            const double visibility = 1 / ((light.z + std::sqrt(a2 + (1 - a2) * light.z * light.z)) * (view.z + std::sqrt(a2 + (1 - a2) * view.z * view.z)));
+            const double visibility =
+                1 / ((light.z + std::sqrt(a2 + (1 - a2) * light.z * light.z)) *
+                     (view.z + std::sqrt(a2 + (1 - a2) * view.z * view.z)));
             sum += d * visibility * light.z * 4 * glm::dot(view, half) * std::sin(polar) * stretch;
         }
     }
@@ -367,7 +390,8 @@ TEST_P(SurfaceLightTest, BlendedSurfacesLieOverEachOtherByDepthNotByOrder) {
         maker.add(pane(0.5f, 2), 20, swapped ? 1.0f : 2.0f);
         const Lit lit = draw(maker);
         const double first = 0.75 * 8 + 0.25 * 4, second = 0.5 * 8 + 0.5 * 2;
-        EXPECT_NEAR(centre(lit.emission), swapped ? 0.75 * second + 0.25 * 4 : 0.5 * first + 0.5 * 2, 1e-5);
+        EXPECT_NEAR(centre(lit.emission),
+                    swapped ? 0.75 * second + 0.25 * 4 : 0.5 * first + 0.5 * 2, 1e-5);
         EXPECT_EQ(lit.blendStatus, "ran");
     }
 }
@@ -402,7 +426,8 @@ TEST_P(SurfaceLightTest, BlendedSurfacesLieAtTheirDepthInTheMedia) {
     glass.emissive = vec3(4);
     maker.add(glass, 20, 4);
     Medium fog;
-    fog.kind = MediumKind::Box; // from z = -6 to z = 6, wider than the view; the camera is at z = 10
+    fog.kind =
+        MediumKind::Box; // from z = -6 to z = 6, wider than the view; the camera is at z = 10
     fog.size = dvec3(100, 100, 12);
     fog.scattering = vec3(float(kScatter));
     fog.absorption = vec3(float(kAbsorb));
@@ -417,18 +442,26 @@ TEST_P(SurfaceLightTest, BlendedSurfacesLieAtTheirDepthInTheMedia) {
     sun.castsShadows = false;
     maker.light(sun, dmat4(1)); // with the camera, along -Z
     const Lit lit = draw(maker);
-    const double sigma = kScatter + kAbsorb, wallDepth = 6, glassDepth = 2; // metres of fog before each, for eye and light alike
+    const double sigma = kScatter + kAbsorb, wallDepth = 6,
+                 glassDepth = 2; // metres of fog before each, for eye and light alike
     const auto through = [&](double d) { return std::exp(-sigma * d); };
     const auto emitted = [&](double d) { return kEmit * (1 - through(d)) / sigma; };
     // Isotropic single scattering with light and eye on the same side: e^{-2σt} along the way.
-    const auto scattered = [&](double d) { return kScatter * kLux / (4 * kPi) * (1 - std::exp(-2 * sigma * d)) / (2 * sigma); };
-    const auto reflected = [&](double albedo, double d) { return albedo / kPi * kLux * std::exp(-2 * sigma * d); };
+    const auto scattered = [&](double d) {
+        return kScatter * kLux / (4 * kPi) * (1 - std::exp(-2 * sigma * d)) / (2 * sigma);
+    };
+    const auto reflected = [&](double albedo, double d) {
+        return albedo / kPi * kLux * std::exp(-2 * sigma * d);
+    };
     const auto blended = [](double behind, double before) { return 0.75 * behind + 0.25 * before; };
-    const double emission = blended(8 * through(wallDepth) + emitted(wallDepth), 4 * through(glassDepth) + emitted(glassDepth));
+    const double emission = blended(8 * through(wallDepth) + emitted(wallDepth),
+                                    4 * through(glassDepth) + emitted(glassDepth));
     EXPECT_NEAR(centre(lit.emission) / emission, 1, 1e-3);
-    EXPECT_NEAR(centre(lit.direct) / blended(reflected(0.5, wallDepth), reflected(0.8, glassDepth)), 1, 1e-3);
+    EXPECT_NEAR(centre(lit.direct) / blended(reflected(0.5, wallDepth), reflected(0.8, glassDepth)),
+                1, 1e-3);
     ASSERT_FALSE(lit.inScatter.pixels.empty());
-    EXPECT_NEAR(centre(lit.inScatter) / blended(scattered(wallDepth), scattered(glassDepth)), 1, 3e-2); // one frame's noise
+    EXPECT_NEAR(centre(lit.inScatter) / blended(scattered(wallDepth), scattered(glassDepth)), 1,
+                3e-2); // one frame's noise
 }
 
 TEST_P(SurfaceLightTest, WhatIsNotNeededIsSkippedWithItsReason) {

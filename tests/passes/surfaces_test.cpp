@@ -54,7 +54,8 @@ Scene sceneOf(Mesh mesh, const Material& material, const dmat4& transform = dmat
     node.meshes = {0};
     node.matrix = transform;
     scene.nodes.push_back(node);
-    scene.versions.structure = scene.versions.transforms = scene.versions.meshes = scene.versions.materials = scene.versions.textures = nextVersion();
+    scene.versions.structure = scene.versions.transforms = scene.versions.meshes =
+        scene.versions.materials = scene.versions.textures = nextVersion();
     return scene;
 }
 
@@ -70,7 +71,8 @@ dvec3 decodeOctahedral(double x, double y) {
     x = x * 65535.0 / 65534.0 * 2 - 1;
     y = y * 65535.0 / 65534.0 * 2 - 1;
     dvec3 n(x, y, 1 - std::abs(x) - std::abs(y));
-    if (n.z < 0) n = {(1 - std::abs(y)) * (x >= 0 ? 1 : -1), (1 - std::abs(x)) * (y >= 0 ? 1 : -1), n.z};
+    if (n.z < 0)
+        n = {(1 - std::abs(y)) * (x >= 0 ? 1 : -1), (1 - std::abs(x)) * (y >= 0 ? 1 : -1), n.z};
     return glm::normalize(n);
 }
 
@@ -101,13 +103,16 @@ protected:
         camera.znear = kNear;
         ViewRequest request;
         request.camera = &camera;
-        request.worldFromCamera = glm::rotate(dmat4(1), turned ? kPi : 0.0, dvec3(0, 1, 0)) * glm::translate(dmat4(1), dvec3(0, 0, 3));
+        request.worldFromCamera = glm::rotate(dmat4(1), turned ? kPi : 0.0, dvec3(0, 1, 0)) *
+                                  glm::translate(dmat4(1), dvec3(0, 0, 3));
         request.width = request.height = kSize;
         request.converge = converge;
         fg::FrameGraph& graph = executor_->beginFrame();
         GBufferSettings settings{0, 1};
         const GBuffer gbuffer = addGBufferPass(graph, *surfaces_, makeView(request), settings);
-        for (const fg::TextureHandle texture : {gbuffer.depth, gbuffer.normal, gbuffer.base, gbuffer.material, gbuffer.emissive}) graph.markOutput(texture);
+        for (const fg::TextureHandle texture :
+             {gbuffer.depth, gbuffer.normal, gbuffer.base, gbuffer.material, gbuffer.emissive})
+            graph.markOutput(texture);
         const Result<void> executed = executor_->execute();
         ASSERT_TRUE(executed.ok()) << executed.message();
         depth_ = executor_->readImage(gbuffer.depth);
@@ -134,7 +139,8 @@ protected:
     }
 
     void expectNormal(const dvec3& expected, const dvec3& measured) {
-        EXPECT_LT(glm::length(expected - measured), 1e-4) << measured.x << " " << measured.y << " " << measured.z;
+        EXPECT_LT(glm::length(expected - measured), 1e-4)
+            << measured.x << " " << measured.y << " " << measured.z;
     }
 
     std::optional<gl::ShaderLibrary> library_;
@@ -194,13 +200,15 @@ TEST_P(SurfacesTest, NormalMapsFollowHandednessMirrorsAndScale) {
     for (const float handedness : {1.0f, -1.0f})
         for (const bool mirrored : {false, true})
             for (const float scale : {1.0f, 0.5f}) {
-                SCOPED_TRACE(::testing::Message() << "handedness " << handedness << ", mirrored " << mirrored << ", scale " << scale);
+                SCOPED_TRACE(::testing::Message() << "handedness " << handedness << ", mirrored "
+                                                  << mirrored << ", scale " << scale);
                 Scene scene = sceneOf(quad(handedness), Material{}, mirrored ? kMirror : dmat4(1));
                 scene.materials[0].normalScale = scale;
                 scene.materials[0].normalTexture.texture = addTexture(scene, {200, 218, 190, 255});
                 draw(scene);
                 // Mirrored in x: the tangent turns round, the bitangent stays where the mesh has it.
-                const double x = stored.x * double(scale) * (mirrored ? -1 : 1), y = stored.y * double(scale) * double(handedness);
+                const double x = stored.x * double(scale) * (mirrored ? -1 : 1),
+                             y = stored.y * double(scale) * double(handedness);
                 expectNormal(glm::normalize(dvec3(x, y, stored.z)), at().normal);
                 expectNormal({0, 0, 1}, at().geometricNormal);
             }
@@ -224,10 +232,13 @@ TEST_P(SurfacesTest, TexturesAreReadInTheirColourSpaces) {
     Material& material = scene.materials[0];
     material.emissive = vec3(10);
     material.baseColorTexture.texture = material.emissiveTexture.texture = texture;
-    material.metallicRoughnessTexture.texture = material.occlusionTexture.texture = texture; // the same image, linear
+    material.metallicRoughnessTexture.texture = material.occlusionTexture.texture =
+        texture; // the same image, linear
     material.occlusionStrength = 0.5f;
     draw(scene);
-    const auto linear = [](double v) { return v <= 0.04045 ? v / 12.92 : std::pow((v + 0.055) / 1.055, 2.4); };
+    const auto linear = [](double v) {
+        return v <= 0.04045 ? v / 12.92 : std::pow((v + 0.055) / 1.055, 2.4);
+    };
     const dvec3 expected(linear(188 / 255.0), linear(64 / 255.0), linear(128 / 255.0));
     for (int c = 0; c < 3; ++c) {
         EXPECT_NEAR(at().base[c], expected[c], 1e-3);
@@ -240,7 +251,8 @@ TEST_P(SurfacesTest, TexturesAreReadInTheirColourSpaces) {
 
 TEST_P(SurfacesTest, TextureRowsRunFromTheTopAndTransformsTurnThem) {
     // Red, green in the upper row; blue, white in the lower one.
-    const std::vector<uint8_t> rgba = {255, 0, 0, 255, 0, 255, 0, 255, 0, 0, 255, 255, 255, 255, 255, 255};
+    const std::vector<uint8_t> rgba = {255, 0, 0,   255, 0,   255, 0,   255,
+                                       0,   0, 255, 255, 255, 255, 255, 255};
     Scene scene = sceneOf(quad(), Material{});
     scene.materials[0].baseColorTexture.texture = addTexture(scene, rgba);
     draw(scene);
@@ -257,7 +269,8 @@ TEST_P(SurfacesTest, TextureRowsRunFromTheTopAndTransformsTurnThem) {
     for (const int x : {6, 9})
         for (const int y : {6, 9}) EXPECT_EQ(at(x, y).base, blue) << x << ", " << y;
     // From another UV set.
-    scene.materials[0].baseColorTexture = TextureRef{scene.materials[0].baseColorTexture.texture, 3};
+    scene.materials[0].baseColorTexture =
+        TextureRef{scene.materials[0].baseColorTexture.texture, 3};
     scene.meshes[0].uvs[3].assign(4, vec2(0.75f, 0.25f));
     scene.meshes[0].version = nextVersion();
     scene.versions.materials = scene.versions.meshes = nextVersion();
@@ -268,7 +281,8 @@ TEST_P(SurfacesTest, TextureRowsRunFromTheTopAndTransformsTurnThem) {
 TEST_P(SurfacesTest, MaskedSurfacesHaveHolesWhereAlphaIsLow) {
     Scene scene = sceneOf(quad(), Material{});
     scene.materials[0].alphaMode = AlphaMode::Mask;
-    scene.materials[0].baseColorTexture.texture = addTexture(scene, {255, 255, 255, 255, 255, 255, 255, 100, 255, 255, 255, 130, 255, 255, 255, 127});
+    scene.materials[0].baseColorTexture.texture = addTexture(
+        scene, {255, 255, 255, 255, 255, 255, 255, 100, 255, 255, 255, 130, 255, 255, 255, 127});
     for (const bool converge : {false, true}) {
         draw(scene, false, converge);
         EXPECT_GT(at(6, 6).depth, 0.0);
@@ -298,8 +312,10 @@ TEST_P(SurfacesTest, VertexColoursMultiplyAndUnlitSurfacesShowTheirColour) {
 TEST_P(SurfacesTest, InstancesAreDrawnEachInItsPlace) {
     Scene scene = sceneOf(quad(), Material{}, glm::scale(dmat4(1), dvec3(0.25)));
     // Mirrored and plain ones, in different runs; one far outside of the view.
-    scene.nodes[0].instances = {glm::translate(dmat4(1), dvec3(-4, 4, 0)), glm::translate(dmat4(1), dvec3(4, -4, 0)) * kMirror,
-                                glm::translate(dmat4(1), dvec3(4, 4, 0)), glm::translate(dmat4(1), dvec3(4000, 0, 0))};
+    scene.nodes[0].instances = {glm::translate(dmat4(1), dvec3(-4, 4, 0)),
+                                glm::translate(dmat4(1), dvec3(4, -4, 0)) * kMirror,
+                                glm::translate(dmat4(1), dvec3(4, 4, 0)),
+                                glm::translate(dmat4(1), dvec3(4000, 0, 0))};
     draw(scene);
     // A metre is a third of the half picture: centres at 8 ± 8/3 pixels.
     EXPECT_GT(at(5, 5).depth, 0.0);
@@ -330,8 +346,10 @@ TEST_P(SurfacesTest, LinesAndPointsWithoutNormalsAreUnlit) {
                     EXPECT_NEAR(at(x, y).emissive.x, 0.25, 1e-6);
                 }
         // Two points, or a line of 2.6 of the picture's six metres.
-        if (topology == MeshTopology::Points) EXPECT_EQ(drawn, 2);
-        else EXPECT_NEAR(drawn, 7, 1);
+        if (topology == MeshTopology::Points)
+            EXPECT_EQ(drawn, 2);
+        else
+            EXPECT_NEAR(drawn, 7, 1);
     }
 }
 

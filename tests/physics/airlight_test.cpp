@@ -14,8 +14,9 @@ struct Row {
     double beta, lightDistance, surfaceDistance, degrees, radiance;
 };
 constexpr Row kRows[] = {
-    {0.1, 10, 20, 30, 8.174737694e-4}, {0.5, 4, 10, 45, 1.409133662e-3}, {1, 2, 5, 60, 3.484834779e-3},
-    {0.05, 20, 60, 90, 3.844005116e-5}, {2, 1, 3, 15, 0.1286970871},
+    {0.1, 10, 20, 30, 8.174737694e-4}, {0.5, 4, 10, 45, 1.409133662e-3},
+    {1, 2, 5, 60, 3.484834779e-3},     {0.05, 20, 60, 90, 3.844005116e-5},
+    {2, 1, 3, 15, 0.1286970871},
 };
 
 class Airlight : public ::testing::TestWithParam<Row> {};
@@ -29,8 +30,9 @@ Scene airlightScene(const Row& row, double scale = 1) {
           {{"name": "lamp", "light": {{"type": "point", "intensity": {3}}}, "translation": [{4}, 0, {5}]}},
           {{"name": "air", "medium": {{"type": "homogeneous", "shape": "everywhere", "scattering": [{6}, {6}, {6}], "absorption": [0, 0, 0]}}}},
           {{"name": "eye", "camera": {{"type": "perspective", "yfov": 0.01, "znear": {7}}}}}], "camera": "eye"}})",
-        1000 * scale, scale, -(row.surfaceDistance + 0.5) * scale, scale * scale, row.lightDistance * std::sin(angle) * scale,
-        -row.lightDistance * std::cos(angle) * scale, row.beta / scale, 1e-3 * scale));
+        1000 * scale, scale, -(row.surfaceDistance + 0.5) * scale, scale * scale,
+        row.lightDistance * std::sin(angle) * scale, -row.lightDistance * std::cos(angle) * scale,
+        row.beta / scale, 1e-3 * scale));
 }
 
 TEST_P(Airlight, MatchesTheIntegralOnceConverged) {
@@ -53,7 +55,9 @@ TEST_P(Airlight, IsTheSameInMillimetresAndInKilometres) {
         const Rendered scaled = sharedRenderer().render(airlightScene(GetParam(), scale), options);
         // I grows with the square of the scale, so that I/d² stays; σ shrinks with it, so that σ·ds stays.
         for (int i = 0; i < 8; ++i)
-            EXPECT_NEAR(double(scaled.pixel(i, i, "LVE").y / metres.pixel(i, i, "LVE").y), 1.0, 1e-3) << "scale " << scale;
+            EXPECT_NEAR(double(scaled.pixel(i, i, "LVE").y / metres.pixel(i, i, "LVE").y), 1.0,
+                        1e-3)
+                << "scale " << scale;
     }
 }
 

@@ -28,11 +28,15 @@ double mean(const Image& image) {
 
 /// A room corner, a column, fog in a box, a ball of smoke, haze and three lights; lengths times `s`, candela times s², σ over s.
 Scene testScene(double s, const std::string& media = "") {
-    const std::string fog = media.empty() ? fmt::format(
-        R"(,{{"name": "fog", "medium": {{"type": "homogeneous", "shape": "box", "size": [{0}, {1}, {0}], "scattering": [{2}, {2}, {3}], "absorption": [{4}, {4}, {4}], "anisotropy": 0.4}}, "translation": [0, {5}, 0]}},
+    const std::string fog =
+        media.empty()
+            ? fmt::format(
+                  R"(,{{"name": "fog", "medium": {{"type": "homogeneous", "shape": "box", "size": [{0}, {1}, {0}], "scattering": [{2}, {2}, {3}], "absorption": [{4}, {4}, {4}], "anisotropy": 0.4}}, "translation": [0, {5}, 0]}},
             {{"name": "ball", "medium": {{"type": "homogeneous", "shape": "sphere", "size": [{1}, {1}, {1}], "scattering": [{3}, {2}, {2}], "absorption": [0, 0, 0]}}, "translation": [{5}, {5}, 0]}},
             {{"name": "haze", "medium": {{"type": "homogeneous", "shape": "height", "scaleHeight": {0}, "scattering": [{4}, {4}, {4}], "absorption": [0, 0, 0]}}}})",
-        4 * s, 1.5 * s, 0.6 / s, 0.8 / s, 0.05 / s, 0.75 * s) : media == "none" ? "" : media;
+                  4 * s, 1.5 * s, 0.6 / s, 0.8 / s, 0.05 / s, 0.75 * s)
+        : media == "none" ? ""
+                          : media;
     return sceneFromJson(fmt::format(
         R"({{"tyndall": 1, "nodes": [
           {{"name": "floor", "primitive": {{"shape": "box", "size": [{0}, {1}, {0}]}}, "translation": [0, {2}, 0], "material": {{"baseColor": [0.7, 0.6, 0.5], "metallic": 0, "roughness": 0.6}}}},
@@ -43,7 +47,8 @@ Scene testScene(double s, const std::string& media = "") {
           {{"name": "torch", "light": {{"type": "spot", "intensity": {9}, "outerConeAngle": 0.6}}, "translation": [{6}, {10}, {4}], "rotation": [-0.5, 0, 0, 0.866]}}
           {11},
           {{"name": "eye", "camera": {{"type": "perspective", "yfov": 0.9, "znear": {12}}}, "translation": [0, {5}, {10}]}}], "camera": "eye"}})",
-        10 * s, 0.2 * s, -0.1 * s, -3 * s, 0.5 * s, 1.6 * s, -0.8 * s, 0.8 * s, 20 * s * s, 40 * s * s, 4 * s, fog, 0.05 * s));
+        10 * s, 0.2 * s, -0.1 * s, -3 * s, 0.5 * s, 1.6 * s, -0.8 * s, 0.8 * s, 20 * s * s,
+        40 * s * s, 4 * s, fog, 0.05 * s));
 }
 
 RenderOptions options(int frames = 1) {
@@ -71,7 +76,9 @@ TEST(Invariance, FarFromTheOriginTheSamePicture) {
     for (Node& node : far.nodes)
         if (node.parent == kNone) node.translation += dvec3(1e6, 0, -1e6);
     far.versions.transforms = nextVersion();
-    EXPECT_LE(relmse(sharedRenderer().render(far, options()).beauty, sharedRenderer().render(near, options()).beauty), 1e-3);
+    EXPECT_LE(relmse(sharedRenderer().render(far, options()).beauty,
+                     sharedRenderer().render(near, options()).beauty),
+              1e-3);
 }
 
 /// The box medium of `shape` as a constant grid of n voxels an edge. Voxel centres: the cube's faces lie half a voxel outside them.
@@ -82,7 +89,9 @@ Scene asGrid(const Scene& shape, int n) {
         dmat4 worldFromIndex(h);
         worldFromIndex[3] = dvec4(dvec3(-1 + h / 2), 1);
         medium.kind = MediumKind::Grid;
-        medium.density = std::make_shared<BrickGrid>(makeBrickGrid(std::vector<float>(size_t(n) * size_t(n) * size_t(n), 1.0f), ivec3(0), ivec3(n), worldFromIndex));
+        medium.density = std::make_shared<BrickGrid>(
+            makeBrickGrid(std::vector<float>(size_t(n) * size_t(n) * size_t(n), 1.0f), ivec3(0),
+                          ivec3(n), worldFromIndex));
         medium.version = nextVersion();
     }
     grid.versions.media = nextVersion();
@@ -90,19 +99,24 @@ Scene asGrid(const Scene& shape, int n) {
 }
 
 struct Comparison {
-    double relmse, energy, scattered; // of the grid against the box; ratios of the means of beauty and of LVE
+    double relmse, energy,
+        scattered; // of the grid against the box; ratios of the means of beauty and of LVE
 };
 
 Comparison gridAgainstBox(dvec3 lamp) {
-    Scene shape = testScene(1, R"(,{"name": "m", "medium": {"type": "homogeneous", "shape": "box", "size": [2, 2, 2], "scattering": [0.9, 0.7, 0.5], "absorption": [0.1, 0.1, 0.1], "anisotropy": 0.3}, "translation": [0, 1, 0]})");
+    Scene shape = testScene(
+        1,
+        R"(,{"name": "m", "medium": {"type": "homogeneous", "shape": "box", "size": [2, 2, 2], "scattering": [0.9, 0.7, 0.5], "absorption": [0.1, 0.1, 0.1], "anisotropy": 0.3}, "translation": [0, 1, 0]})");
     for (Node& node : shape.nodes)
         if (node.name == "lamp") node.translation = lamp;
     RenderOptions o = options(16);
     o.settings = {"media.integration=exact", "media.lightOpticalDepth=exact"};
     const Rendered box = sharedRenderer().render(shape, o);
     const Rendered grid = sharedRenderer().render(asGrid(shape, 64), o);
-    const Comparison c{relmse(grid.beauty, box.beauty), mean(grid.beauty) / mean(box.beauty), mean(grid.terms.at("LVE")) / mean(box.terms.at("LVE"))};
-    std::printf("relmse %.2e; energy %.5f, of the scattered light alone %.5f\n", c.relmse, c.energy, c.scattered);
+    const Comparison c{relmse(grid.beauty, box.beauty), mean(grid.beauty) / mean(box.beauty),
+                       mean(grid.terms.at("LVE")) / mean(box.terms.at("LVE"))};
+    std::printf("relmse %.2e; energy %.5f, of the scattered light alone %.5f\n", c.relmse, c.energy,
+                c.scattered);
     return c;
 }
 
@@ -133,7 +147,8 @@ TEST(Skips, WithoutMediaEveryMediaPassIsSkippedWithItsReason) {
             ++mediaPasses;
             EXPECT_EQ(status, "skipped: no medium in the scene") << name;
         }
-    EXPECT_GT(mediaPasses, 0) << "the passes are still declared, so that a person can see why they did not run";
+    EXPECT_GT(mediaPasses, 0)
+        << "the passes are still declared, so that a person can see why they did not run";
 }
 
 TEST(Skips, WithoutMediaThePictureIsBitIdenticalToMediaSwitchedOff) {
@@ -152,19 +167,22 @@ TEST(Skips, AMediumOutOfViewAndOffEveryLightPathIsSkippedAndOneInTheLightsPathIs
               {{"name": "floor", "primitive": {{"shape": "box", "size": [2, 0.1, 2]}}, "translation": [0, 0, -4]}},
               {{"name": "lamp", "light": {{"type": "point", "intensity": 10}}, "translation": [0, 3, -4]}},
               {{"name": "puff", "medium": {{"type": "homogeneous", "shape": "sphere", "size": [1, 1, 1], "scattering": [1, 1, 1], "absorption": [0, 0, 0]}}, "translation": [0, {}, {}]}},
-              {{"name": "eye", "camera": {{"type": "perspective", "yfov": 0.5}}, "translation": [0, 0.5, 0]}}], "camera": "eye"}})", z > 0 ? 0.5 : 2.2, z));
+              {{"name": "eye", "camera": {{"type": "perspective", "yfov": 0.5}}, "translation": [0, 0.5, 0]}}], "camera": "eye"}})",
+            z > 0 ? 0.5 : 2.2, z));
     };
     RenderOptions off = options();
     off.settings = {"media.enabled=false"};
     const Rendered behind = sharedRenderer().render(scene(20), options());
     EXPECT_EQ(behind.beauty.pixels, sharedRenderer().render(scene(20), off).beauty.pixels);
     int skipped = 0;
-    for (const auto& [name, status] : behind.passes) skipped += isMediaPass(name) && status.rfind("skipped", 0) == 0;
+    for (const auto& [name, status] : behind.passes)
+        skipped += isMediaPass(name) && status.rfind("skipped", 0) == 0;
     EXPECT_GT(skipped, 0);
     for (const auto& [name, status] : behind.passes)
         EXPECT_TRUE(!isMediaPass(name) || status.rfind("ran", 0) != 0) << name;
     // Above the picture, but between the lamp and the floor: it dims the floor.
-    EXPECT_LT(mean(sharedRenderer().render(scene(-4), options()).beauty), 0.95 * mean(sharedRenderer().render(scene(-4), off).beauty));
+    EXPECT_LT(mean(sharedRenderer().render(scene(-4), options()).beauty),
+              0.95 * mean(sharedRenderer().render(scene(-4), off).beauty));
 }
 
 TEST(Skips, PoisonedResourcesNeverReachThePicture) {
@@ -179,7 +197,8 @@ TEST(Skips, PoisonedResourcesNeverReachThePicture) {
 }
 
 TEST(Determinism, TheSameFrameTwiceIsTheSameBits) {
-    const Rendered a = sharedRenderer().render(testScene(1), options(3)), b = sharedRenderer().render(testScene(1), options(3));
+    const Rendered a = sharedRenderer().render(testScene(1), options(3)),
+                   b = sharedRenderer().render(testScene(1), options(3));
     EXPECT_EQ(a.beauty.pixels, b.beauty.pixels);
     EXPECT_EQ(a.display, b.display);
 }

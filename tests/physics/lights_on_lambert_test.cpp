@@ -19,14 +19,16 @@ constexpr int kSize = 24;
 std::string planeScene(const std::string& light) {
     return R"({"tyndall": 1, "nodes": [
       {"name": "floor", "primitive": {"shape": "plane", "size": [40, 1, 40]}, "material": {"baseColor": [0.7, 0.7, 0.7], "metallic": 0, "roughness": 1, "specular": 0}},
-      )" + light + R"(,
+      )" + light +
+           R"(,
       {"name": "eye", "camera": {"type": "orthographic", "ymag": 1.5}, "translation": [0, 5, 0], "rotation": [-0.7071067811865476, 0, 0, 0.7071067811865476]}],
       "camera": "eye"})";
 }
 
 /// The plane's point under the centre of pixel (x, y) counted from the top left: the picture's up is -z.
 dvec3 pointUnder(int x, int y) {
-    return {((x + 0.5) / kSize * 2 - 1) * kHalfHeight, 0, ((y + 0.5) / kSize * 2 - 1) * kHalfHeight};
+    return {((x + 0.5) / kSize * 2 - 1) * kHalfHeight, 0,
+            ((y + 0.5) / kSize * 2 - 1) * kHalfHeight};
 }
 
 /// What an average of frames tends to: their sub-pixel offsets fill the pixel. Under the panel the mean is 0.2 % below the value
@@ -35,83 +37,102 @@ double pixelMean(const std::function<double(dvec3)>& lux, int x, int y) {
     double sum = 0;
     for (int i = 0; i < 256; ++i) {
         const double step = 2 * kHalfHeight / kSize;
-        sum += lux(pointUnder(x, y) + dvec3(((i % 16 + 0.5) / 16 - 0.5) * step, 0, ((i / 16 + 0.5) / 16 - 0.5) * step)) / 256;
+        sum += lux(pointUnder(x, y) + dvec3(((i % 16 + 0.5) / 16 - 0.5) * step, 0,
+                                            ((i / 16 + 0.5) / 16 - 0.5) * step)) /
+               256;
     }
     return sum;
 }
 
-void expectIrradiance(const std::string& light, const std::function<double(dvec3)>& lux, RenderOptions options = {}, double bound = kBound) {
+void expectIrradiance(const std::string& light, const std::function<double(dvec3)>& lux,
+                      RenderOptions options = {}, double bound = kBound) {
     options.width = options.height = kSize;
     const Rendered picture = sharedRenderer().render(sceneFromJson(planeScene(light)), options);
     double worst = 0;
     for (int y = 0; y < kSize; ++y)
         for (int x = 0; x < kSize; ++x) {
-            const double expected = kAlbedo / kPi * (options.frames > 1 ? pixelMean(lux, x, y) : lux(pointUnder(x, y)));
+            const double expected =
+                kAlbedo / kPi * (options.frames > 1 ? pixelMean(lux, x, y) : lux(pointUnder(x, y)));
             const double measured = double(picture.pixel(x, y).y);
-            const double error = expected == 0 ? (measured == 0 ? 0 : 1) : std::abs(measured / expected - 1);
-            ASSERT_LE(error, bound) << "at pixel " << x << ", " << y << ": " << measured << " nits where " << expected << " are right";
+            const double error =
+                expected == 0 ? (measured == 0 ? 0 : 1) : std::abs(measured / expected - 1);
+            ASSERT_LE(error, bound) << "at pixel " << x << ", " << y << ": " << measured
+                                    << " nits where " << expected << " are right";
             worst = std::max(worst, error);
         }
     std::printf("worst relative error %.2e\n", worst);
 }
 
 TEST(LightsOnLambert, PointLightFallsOffWithTheSquareAndTheCosine) {
-    expectIrradiance(R"({"name": "lamp", "light": {"type": "point", "intensity": 100}, "translation": [0.3, 2, -0.4]})", [](dvec3 p) {
-        const dvec3 d = dvec3(0.3, 2, -0.4) - p;
-        return 100 * d.y / std::pow(glm::dot(d, d), 1.5);
-    });
+    expectIrradiance(
+        R"({"name": "lamp", "light": {"type": "point", "intensity": 100}, "translation": [0.3, 2, -0.4]})",
+        [](dvec3 p) {
+            const dvec3 d = dvec3(0.3, 2, -0.4) - p;
+            return 100 * d.y / std::pow(glm::dot(d, d), 1.5);
+        });
 }
 
 TEST(LightsOnLambert, DirectionalLightGivesLuxTimesCosine) {
     // Turned by 30 degrees about X from straight down: the node looks along -Z, so -60 degrees of pitch in all.
     const double half = 0.5 * (-kPi / 3);
-    expectIrradiance(R"({"name": "sun", "light": {"type": "directional", "intensity": 20}, "rotation": [)" + std::to_string(std::sin(half)) +
-                         ", 0, 0, " + std::to_string(std::cos(half)) + "]}",
-                     [](dvec3) { return 20 * std::cos(kPi / 6); });
+    expectIrradiance(
+        R"({"name": "sun", "light": {"type": "directional", "intensity": 20}, "rotation": [)" +
+            std::to_string(std::sin(half)) + ", 0, 0, " + std::to_string(std::cos(half)) + "]}",
+        [](dvec3) { return 20 * std::cos(kPi / 6); });
 }
 
 TEST(LightsOnLambert, SpotLightHasTheConeOfTheExtension) {
-    expectIrradiance(R"({"name": "torch", "light": {"type": "spot", "intensity": 50, "innerConeAngle": 0.2, "outerConeAngle": 0.6}, "translation": [0, 2, 0],
+    expectIrradiance(
+        R"({"name": "torch", "light": {"type": "spot", "intensity": 50, "innerConeAngle": 0.2, "outerConeAngle": 0.6}, "translation": [0, 2, 0],
                          "rotation": [-0.7071067811865476, 0, 0, 0.7071067811865476]})",
-                     [](dvec3 p) {
-                         const dvec3 d = dvec3(0, 2, 0) - p;
-                         const double cosine = d.y / glm::length(d); // of the angle to the axis, and of incidence
-                         // KHR_lights_punctual's reference code.
-                         const double scale = 1 / std::max(0.001, std::cos(0.2) - std::cos(0.6));
-                         const double t = std::clamp(cosine * scale - std::cos(0.6) * scale, 0.0, 1.0);
-                         return 50 * t * t * cosine / glm::dot(d, d);
-                     });
+        [](dvec3 p) {
+            const dvec3 d = dvec3(0, 2, 0) - p;
+            const double cosine =
+                d.y / glm::length(d); // of the angle to the axis, and of incidence
+            // KHR_lights_punctual's reference code.
+            const double scale = 1 / std::max(0.001, std::cos(0.2) - std::cos(0.6));
+            const double t = std::clamp(cosine * scale - std::cos(0.6) * scale, 0.0, 1.0);
+            return 50 * t * t * cosine / glm::dot(d, d);
+        });
 }
 
 TEST(LightsOnLambert, PointLightRangeWindowsTheFalloff) {
-    expectIrradiance(R"({"name": "lamp", "light": {"type": "point", "intensity": 100, "range": 4}, "translation": [0, 2, 0]})", [](dvec3 p) {
-        const dvec3 d = dvec3(0, 2, 0) - p;
-        const double distance = glm::length(d);
-        const double window = std::clamp(1 - std::pow(distance / 4, 4), 0.0, 1.0); // the extension's recommendation
-        return 100 * window * d.y / std::pow(distance, 3);
-    });
+    expectIrradiance(
+        R"({"name": "lamp", "light": {"type": "point", "intensity": 100, "range": 4}, "translation": [0, 2, 0]})",
+        [](dvec3 p) {
+            const dvec3 d = dvec3(0, 2, 0) - p;
+            const double distance = glm::length(d);
+            const double window = std::clamp(1 - std::pow(distance / 4, 4), 0.0,
+                                             1.0); // the extension's recommendation
+            return 100 * window * d.y / std::pow(distance, 3);
+        });
 }
 
 /// Irradiance of a Lambertian rectangle (corners in order, seen from the point) by Lambert's polygon formula, in double precision.
 double rectIrradiance(const dvec3 (&corners)[4], dvec3 point, dvec3 normal, double radiance) {
     dvec3 sum(0);
     for (int i = 0; i < 4; ++i) {
-        const dvec3 a = glm::normalize(corners[i] - point), b = glm::normalize(corners[(i + 1) % 4] - point);
+        const dvec3 a = glm::normalize(corners[i] - point),
+                    b = glm::normalize(corners[(i + 1) % 4] - point);
         const dvec3 axis = glm::cross(a, b);
         sum += std::acos(std::clamp(glm::dot(a, b), -1.0, 1.0)) * axis / glm::length(axis);
     }
     return 0.5 * radiance * std::abs(glm::dot(sum, normal));
 }
 
-constexpr const char* kPanel = R"({"name": "panel", "light": {"type": "rect", "size": [1.2, 0.8], "radiance": [10, 10, 10]}, "translation": [0.2, 1.5, 0.1],
+constexpr const char* kPanel =
+    R"({"name": "panel", "light": {"type": "rect", "size": [1.2, 0.8], "radiance": [10, 10, 10]}, "translation": [0.2, 1.5, 0.1],
                                    "rotation": [-0.7071067811865476, 0, 0, 0.7071067811865476]})";
 
 double panelLux(dvec3 p) {
-    const dvec3 corners[4] = {{-0.4, 1.5, -0.3}, {0.8, 1.5, -0.3}, {0.8, 1.5, 0.5}, {-0.4, 1.5, 0.5}};
+    const dvec3 corners[4] = {
+        {-0.4, 1.5, -0.3}, {0.8, 1.5, -0.3}, {0.8, 1.5, 0.5}, {-0.4, 1.5, 0.5}};
     return rectIrradiance(corners, p, {0, 1, 0}, 10);
 }
 
-TEST(LightsOnLambert, RectLightMatchesLambertsPolygonFormula) { expectIrradiance(kPanel, panelLux); }
+TEST(LightsOnLambert, RectLightMatchesLambertsPolygonFormula) {
+    expectIrradiance(kPanel, panelLux);
+}
 
 TEST(LightsOnLambert, RectLightSampledOverManyFramesTendsToTheSame) {
     RenderOptions options;
@@ -122,13 +143,19 @@ TEST(LightsOnLambert, RectLightSampledOverManyFramesTendsToTheSame) {
 }
 
 TEST(LightsOnLambert, LightIsLinearAndAddsUp) {
-    const std::string lamp = R"({"name": "a", "light": {"type": "point", "intensity": 100}, "translation": [0.3, 2, -0.4]})";
-    const std::string torch = R"({"name": "b", "light": {"type": "spot", "intensity": 50, "outerConeAngle": 0.6}, "translation": [0, 2, 0], "rotation": [-0.7071067811865476, 0, 0, 0.7071067811865476]})";
-    const std::string doubled = R"({"name": "a", "light": {"type": "point", "intensity": 200}, "translation": [0.3, 2, -0.4]})";
+    const std::string lamp =
+        R"({"name": "a", "light": {"type": "point", "intensity": 100}, "translation": [0.3, 2, -0.4]})";
+    const std::string torch =
+        R"({"name": "b", "light": {"type": "spot", "intensity": 50, "outerConeAngle": 0.6}, "translation": [0, 2, 0], "rotation": [-0.7071067811865476, 0, 0, 0.7071067811865476]})";
+    const std::string doubled =
+        R"({"name": "a", "light": {"type": "point", "intensity": 200}, "translation": [0.3, 2, -0.4]})";
     RenderOptions options;
     options.width = options.height = kSize;
-    const auto render = [&](const std::string& lights) { return sharedRenderer().render(sceneFromJson(planeScene(lights)), options).beauty; };
-    const Image a = render(lamp), b = render(torch), both = render(lamp + "," + torch), twice = render(doubled);
+    const auto render = [&](const std::string& lights) {
+        return sharedRenderer().render(sceneFromJson(planeScene(lights)), options).beauty;
+    };
+    const Image a = render(lamp), b = render(torch), both = render(lamp + "," + torch),
+                twice = render(doubled);
     for (size_t i = 0; i < a.pixels.size(); ++i) {
         ASSERT_FLOAT_EQ(twice.pixels[i], 2 * a.pixels[i]);
         ASSERT_NEAR(both.pixels[i], a.pixels[i] + b.pixels[i], 1e-5f * both.pixels[i] + 1e-12f);

@@ -19,11 +19,13 @@ class Slab : public ::testing::TestWithParam<SlabCase> {};
 
 /// An orthographic eye on one side of a slab of optical thickness tau (σt = 1/m, albedo 1, isotropic), at angle acos(mu) to the normal.
 double pixelRadiance(double tau, double mu, bool transmitted) {
-    const double angle = std::acos(mu) * 0.5; // half of the turn about X, away from looking straight at the slab
+    const double angle =
+        std::acos(mu) * 0.5; // half of the turn about X, away from looking straight at the slab
     const double look = (transmitted ? kPi / 2 : -kPi / 2) * 0.5;
     const double turn = look + (transmitted ? -angle : angle);
     const double distance = 3000;
-    const double height = (transmitted ? -1 : 1) * mu * distance, side = std::sqrt(1 - mu * mu) * distance;
+    const double height = (transmitted ? -1 : 1) * mu * distance,
+                 side = std::sqrt(1 - mu * mu) * distance;
     const Scene scene = sceneFromJson(fmt::format(
         R"({{"tyndall": 1, "nodes": [
           {{"name": "slab", "medium": {{"type": "homogeneous", "shape": "box", "size": [1000, {}, 1000], "scattering": [1, 1, 1], "absorption": [0, 0, 0]}}}},
@@ -46,7 +48,11 @@ std::vector<std::pair<double, double>> gaussNodes(int n) {
         double x = std::cos(kPi * (i + 0.75) / (n + 0.5)), derivative = 1;
         for (int iteration = 0; iteration < 50; ++iteration) {
             double p0 = 1, p1 = x;
-            for (int k = 2; k <= n; ++k) { const double p2 = ((2 * k - 1) * x * p1 - (k - 1) * p0) / k; p0 = p1; p1 = p2; }
+            for (int k = 2; k <= n; ++k) {
+                const double p2 = ((2 * k - 1) * x * p1 - (k - 1) * p0) / k;
+                p0 = p1;
+                p1 = p2;
+            }
             derivative = n * (x * p1 - p0) / (x * x - 1);
             x -= p1 / derivative;
         }
@@ -60,17 +66,22 @@ TEST_P(Slab, FirstOrderReflectionAndTransmission) {
     double reflected = 0, transmitted = 0;
     for (const auto& [mu, weight] : gaussNodes(12)) {
         const double r = pixelRadiance(tau, mu, false), t = pixelRadiance(tau, mu, true);
-        EXPECT_NEAR(r / (0.25 / (1 + mu) * -std::expm1(-tau * (1 + 1 / mu))), 1, kBound) << "reflected at mu " << mu;
-        EXPECT_NEAR(t / (0.25 * (std::exp(-tau) - std::exp(-tau / mu)) / (1 - mu)), 1, kBound) << "transmitted at mu " << mu;
+        EXPECT_NEAR(r / (0.25 / (1 + mu) * -std::expm1(-tau * (1 + 1 / mu))), 1, kBound)
+            << "reflected at mu " << mu;
+        EXPECT_NEAR(t / (0.25 * (std::exp(-tau) - std::exp(-tau / mu)) / (1 - mu)), 1, kBound)
+            << "transmitted at mu " << mu;
         reflected += 2 * weight * mu * r;
         transmitted += 2 * weight * mu * t;
     }
     EXPECT_NEAR(reflected / r1, 1, kBound);
     EXPECT_NEAR(transmitted / t1, 1, kBound);
-    std::printf("tau %g: R1 %.7f (%+.2e), T1 %.7f (%+.2e)\n", tau, reflected, reflected / r1 - 1, transmitted, transmitted / t1 - 1);
+    std::printf("tau %g: R1 %.7f (%+.2e), T1 %.7f (%+.2e)\n", tau, reflected, reflected / r1 - 1,
+                transmitted, transmitted / t1 - 1);
 }
 
-INSTANTIATE_TEST_SUITE_P(OrderTable, Slab, ::testing::Values(SlabCase{1, .1420154, .1061729}, SlabCase{2, .1523059, .0615122}));
+INSTANTIATE_TEST_SUITE_P(OrderTable, Slab,
+                         ::testing::Values(SlabCase{1, .1420154, .1061729},
+                                           SlabCase{2, .1523059, .0615122}));
 
 } // namespace
 } // namespace tyndall::test

@@ -32,58 +32,82 @@ struct CaptureTest : ::testing::Test {
         arguments.insert(arguments.begin(), "capture");
         return tyndall(arguments, options);
     }
-    [[nodiscard]] std::string content(const std::string& name) const { return readFile(options.folder / name).value(); }
-    [[nodiscard]] ExrFile exr(const std::string& name) const { return readExr(options.folder / name).value(); }
-    [[nodiscard]] size_t fileCount() const { return size_t(std::distance(fs::directory_iterator(options.folder), fs::directory_iterator())); }
+    [[nodiscard]] std::string content(const std::string& name) const {
+        return readFile(options.folder / name).value();
+    }
+    [[nodiscard]] ExrFile exr(const std::string& name) const {
+        return readExr(options.folder / name).value();
+    }
+    [[nodiscard]] size_t fileCount() const {
+        return size_t(
+            std::distance(fs::directory_iterator(options.folder), fs::directory_iterator()));
+    }
 };
 
 TEST_F(CaptureTest, TheReportHasEveryFieldOfTheInterface) {
-    const ProcessResult result = capture({foggy, "-o", "a.exr", "--size", "64x48", "--frames", "4", "--report", "r.json", "--seed", "3"});
+    const ProcessResult result = capture({foggy, "-o", "a.exr", "--size", "64x48", "--frames", "4",
+                                          "--report", "r.json", "--seed", "3"});
     ASSERT_EQ(result.status, 0) << result.err;
     const json report = json::parse(content("r.json"));
     EXPECT_EQ(report.at("scene"), foggy);
     EXPECT_EQ(report.at("size"), json::array({64, 48}));
     EXPECT_EQ(report.at("frames"), 4);
-    EXPECT_THAT((std::vector<std::string>{"egl-device", "egl-surfaceless", "osmesa"}), ::testing::Contains(report.at("backend").get<std::string>()));
-    for (const char* key : {"vendor", "renderer", "version"}) EXPECT_NE(report.at("gl").at(key).get<std::string>(), "");
+    EXPECT_THAT((std::vector<std::string>{"egl-device", "egl-surfaceless", "osmesa"}),
+                ::testing::Contains(report.at("backend").get<std::string>()));
+    for (const char* key : {"vendor", "renderer", "version"})
+        EXPECT_NE(report.at("gl").at(key).get<std::string>(), "");
     EXPECT_TRUE(report.at("technique").is_string());
     EXPECT_NE(report.at("why").get<std::string>(), "");
-    EXPECT_THAT(report.at("claims").get<std::vector<std::string>>(), ::testing::IsSupersetOf({"LE", "LSE", "LVE"}));
+    EXPECT_THAT(report.at("claims").get<std::vector<std::string>>(),
+                ::testing::IsSupersetOf({"LE", "LSE", "LVE"}));
     EXPECT_TRUE(report.at("missing").is_array());
     EXPECT_GT(report.at("frame_ms").at("median").get<double>(), 0);
-    EXPECT_GE(report.at("frame_ms").at("p95").get<double>(), report.at("frame_ms").at("median").get<double>());
+    EXPECT_GE(report.at("frame_ms").at("p95").get<double>(),
+              report.at("frame_ms").at("median").get<double>());
     EXPECT_GT(report.at("startup_ms").get<double>(), 0);
     EXPECT_GT(report.at("gpu_bytes").get<uint64_t>(), 64u * 48 * 16);
     EXPECT_GT(report.at("peak_rss_bytes").get<uint64_t>(), 1u << 20);
-    for (const char* key : {"nonfinite", "negative", "gl_errors", "gl_objects_leaked"}) EXPECT_EQ(report.at("counters").at(key), 0) << key;
+    for (const char* key : {"nonfinite", "negative", "gl_errors", "gl_objects_leaked"})
+        EXPECT_EQ(report.at("counters").at(key), 0) << key;
     EXPECT_TRUE(report.at("iterations").is_object());
     EXPECT_TRUE(report.at("residual").is_object());
 }
 
 TEST_F(CaptureTest, EveryPassOfTheReportRanWithATimeOrSaysWhyNot) {
-    ASSERT_EQ(capture({clear, "-o", "a.exr", "--size", "64x48", "--frames", "6", "--report", "r.json"}).status, 0);
+    ASSERT_EQ(
+        capture({clear, "-o", "a.exr", "--size", "64x48", "--frames", "6", "--report", "r.json"})
+            .status,
+        0);
     const json report = json::parse(content("r.json"));
     int ran = 0, skippedMedia = 0;
     for (const json& pass : report.at("passes")) {
-        const auto name = pass.at("name").get<std::string>(), status = pass.at("status").get<std::string>();
+        const auto name = pass.at("name").get<std::string>(),
+                   status = pass.at("status").get<std::string>();
         if (status == "ran") {
             ++ran;
             EXPECT_GE(pass.at("cpu_ms").get<double>(), 0) << name;
-            EXPECT_TRUE(pass.at("gpu_ms").is_number()) << name << ": after six frames there is a measurement";
+            EXPECT_TRUE(pass.at("gpu_ms").is_number())
+                << name << ": after six frames there is a measurement";
         } else {
-            EXPECT_THAT((std::vector<std::string>{"skipped", "cached", "culled"}), ::testing::Contains(status)) << name;
+            EXPECT_THAT((std::vector<std::string>{"skipped", "cached", "culled"}),
+                        ::testing::Contains(status))
+                << name;
             EXPECT_NE(pass.at("reason").get<std::string>(), "") << name;
             EXPECT_TRUE(pass.contains("saved_ms")) << name;
             skippedMedia += status == "skipped" && name.starts_with("media.");
         }
-        EXPECT_FALSE(name.starts_with("media.") && status == "ran") << name << " in a scene without media";
+        EXPECT_FALSE(name.starts_with("media.") && status == "ran")
+            << name << " in a scene without media";
     }
     EXPECT_GT(ran, 0);
     EXPECT_GT(skippedMedia, 0) << report.at("passes");
 }
 
 TEST_F(CaptureTest, TheTraceIsALoadableListOfEvents) {
-    ASSERT_EQ(capture({foggy, "-o", "a.png", "--size", "32x32", "--frames", "3", "--trace", "t.json"}).status, 0);
+    ASSERT_EQ(
+        capture({foggy, "-o", "a.png", "--size", "32x32", "--frames", "3", "--trace", "t.json"})
+            .status,
+        0);
     const json trace = json::parse(content("t.json"));
     std::vector<std::string> names;
     for (const json& event : trace.at("traceEvents")) {
@@ -92,15 +116,20 @@ TEST_F(CaptureTest, TheTraceIsALoadableListOfEvents) {
         EXPECT_GE(event.at("ts").get<double>(), 0);
         EXPECT_GE(event.at("dur").get<double>(), 0);
     }
-    EXPECT_THAT(names, ::testing::IsSupersetOf({"scene.load", "context.create", "renderer.create", "frame 0", "frame 2"}));
+    EXPECT_THAT(names, ::testing::IsSupersetOf({"scene.load", "context.create", "renderer.create",
+                                                "frame 0", "frame 2"}));
 }
 
 TEST_F(CaptureTest, LayersCarryTermsThatAddUpToTheBeauty) {
-    ASSERT_EQ(capture({foggy, "-o", "a.exr", "--size", "48x40", "--gi", "none", "--aov", "terms,depth,normal,albedo,transmittance", "--seed", "9"}).status, 0);
+    ASSERT_EQ(capture({foggy, "-o", "a.exr", "--size", "48x40", "--gi", "none", "--aov",
+                       "terms,depth,normal,albedo,transmittance", "--seed", "9"})
+                  .status,
+              0);
     const ExrFile file = exr("a.exr");
     std::map<std::string, Image> layers;
     for (const ImageLayer& layer : file.layers) layers[layer.name] = layer.image;
-    for (const char* name : {"", "LE", "LSE", "LVE", "depth", "normal", "albedo", "transmittance"}) ASSERT_TRUE(layers.contains(name)) << name;
+    for (const char* name : {"", "LE", "LSE", "LVE", "depth", "normal", "albedo", "transmittance"})
+        ASSERT_TRUE(layers.contains(name)) << name;
     EXPECT_EQ(layers["depth"].channels, 1);
     EXPECT_EQ(layers["transmittance"].channels, 3);
     const Image& beauty = layers[""];
@@ -108,7 +137,8 @@ TEST_F(CaptureTest, LayersCarryTermsThatAddUpToTheBeauty) {
     EXPECT_EQ(beauty.height, 40);
     double lit = 0;
     for (size_t i = 0; i < beauty.pixels.size(); ++i) {
-        const float sum = layers["LE"].pixels[i] + layers["LSE"].pixels[i] + layers["LVE"].pixels[i];
+        const float sum =
+            layers["LE"].pixels[i] + layers["LSE"].pixels[i] + layers["LVE"].pixels[i];
         ASSERT_NEAR(beauty.pixels[i], sum, 1e-5f * std::abs(sum) + 1e-7f) << "pixel value " << i;
         lit += double(layers["LVE"].pixels[i]);
     }
@@ -117,11 +147,13 @@ TEST_F(CaptureTest, LayersCarryTermsThatAddUpToTheBeauty) {
     EXPECT_EQ(file.metadata.at("tyndall.scene"), foggy);
     EXPECT_EQ(file.metadata.at("tyndall.size"), "48x40");
     EXPECT_EQ(file.metadata.at("tyndall.seed"), "9");
-    EXPECT_TRUE(file.metadata.contains("tyndall.version") && file.metadata.contains("tyndall.settings"));
+    EXPECT_TRUE(file.metadata.contains("tyndall.version") &&
+                file.metadata.contains("tyndall.settings"));
 }
 
 TEST_F(CaptureTest, RowsRunFromTheTop) {
-    ASSERT_EQ(capture({clear, "-o", "a.exr", "--size", "32x32", "--aov", "depth,albedo"}).status, 0);
+    ASSERT_EQ(capture({clear, "-o", "a.exr", "--size", "32x32", "--aov", "depth,albedo"}).status,
+              0);
     // The floor lies below the eye: it covers the lower rows alone.
     for (const ImageLayer& layer : exr("a.exr").layers)
         if (layer.name == "albedo") {
@@ -131,23 +163,42 @@ TEST_F(CaptureTest, RowsRunFromTheTop) {
 }
 
 TEST_F(CaptureTest, TermsThatAreNotAskedForAreNotRendered) {
-    ASSERT_EQ(capture({foggy, "-o", "a.exr", "--size", "32x32", "--terms", "LSE", "--aov", "terms", "--report", "r.json"}).status, 0);
+    ASSERT_EQ(capture({foggy, "-o", "a.exr", "--size", "32x32", "--terms", "LSE", "--aov", "terms",
+                       "--report", "r.json"})
+                  .status,
+              0);
     EXPECT_EQ(json::parse(content("r.json")).at("claims"), json::array({"LSE"}));
-    for (const ImageLayer& layer : exr("a.exr").layers) EXPECT_TRUE(layer.name.empty() || layer.name == "LSE") << layer.name;
+    for (const ImageLayer& layer : exr("a.exr").layers)
+        EXPECT_TRUE(layer.name.empty() || layer.name == "LSE") << layer.name;
 }
 
 TEST_F(CaptureTest, FramesAreNumberedAndTheSameSeedGivesTheSameBits) {
-    ASSERT_EQ(capture({foggy, "-o", "f-%04d.exr", "--size", "24x24", "--frames", "3", "--time-step", "0.5", "--quiet"}).status, 0);
-    for (const char* name : {"f-0000.exr", "f-0001.exr", "f-0002.exr"}) EXPECT_TRUE(fs::exists(options.folder / name)) << name;
+    ASSERT_EQ(capture({foggy, "-o", "f-%04d.exr", "--size", "24x24", "--frames", "3", "--time-step",
+                       "0.5", "--quiet"})
+                  .status,
+              0);
+    for (const char* name : {"f-0000.exr", "f-0001.exr", "f-0002.exr"})
+        EXPECT_TRUE(fs::exists(options.folder / name)) << name;
     EXPECT_FALSE(fs::exists(options.folder / "f-0003.exr"));
-    ASSERT_EQ(capture({foggy, "-o", "g-%04d.exr", "--size", "24x24", "--frames", "3", "--time-step", "0.5", "--quiet"}).status, 0);
+    ASSERT_EQ(capture({foggy, "-o", "g-%04d.exr", "--size", "24x24", "--frames", "3", "--time-step",
+                       "0.5", "--quiet"})
+                  .status,
+              0);
     EXPECT_EQ(exr("f-0002.exr").layers[0].image.pixels, exr("g-0002.exr").layers[0].image.pixels);
 }
 
 TEST_F(CaptureTest, ConvergingLowersTheErrorAndIsReported) {
-    ASSERT_EQ(capture({foggy, "-o", "r.exr", "--size", "32x24", "--converge", "--frames", "48"}).status, 0);
-    ASSERT_EQ(capture({foggy, "-o", "a.exr", "--size", "32x24", "--converge", "--frames", "2", "--seed", "1"}).status, 0);
-    ASSERT_EQ(capture({foggy, "-o", "b.exr", "--size", "32x24", "--converge", "--frames", "16", "--seed", "1", "--report", "r.json"}).status, 0);
+    ASSERT_EQ(
+        capture({foggy, "-o", "r.exr", "--size", "32x24", "--converge", "--frames", "48"}).status,
+        0);
+    ASSERT_EQ(capture({foggy, "-o", "a.exr", "--size", "32x24", "--converge", "--frames", "2",
+                       "--seed", "1"})
+                  .status,
+              0);
+    ASSERT_EQ(capture({foggy, "-o", "b.exr", "--size", "32x24", "--converge", "--frames", "16",
+                       "--seed", "1", "--report", "r.json"})
+                  .status,
+              0);
     const Image reference = exr("r.exr").layers[0].image;
     const double few = compareImages(exr("a.exr").layers[0].image, reference)->relmse;
     const double many = compareImages(exr("b.exr").layers[0].image, reference)->relmse;
@@ -157,11 +208,15 @@ TEST_F(CaptureTest, ConvergingLowersTheErrorAndIsReported) {
 }
 
 TEST_F(CaptureTest, ThresholdsFailWithStatusOneButThePictureIsThere) {
-    const ProcessResult result = capture({clear, "-o", "a.png", "--size", "32x32", "--max-ms", "0.000001", "--quiet"});
+    const ProcessResult result =
+        capture({clear, "-o", "a.png", "--size", "32x32", "--max-ms", "0.000001", "--quiet"});
     EXPECT_EQ(result.status, 1);
     EXPECT_THAT(result.err, HasSubstr("--max-ms"));
     EXPECT_TRUE(fs::exists(options.folder / "a.png"));
-    EXPECT_EQ(capture({clear, "-o", "a.png", "--size", "32x32", "--max-ms", "600000", "--fail-on-nonfinite", "--quiet"}).status, 0);
+    EXPECT_EQ(capture({clear, "-o", "a.png", "--size", "32x32", "--max-ms", "600000",
+                       "--fail-on-nonfinite", "--quiet"})
+                  .status,
+              0);
 }
 
 TEST_F(CaptureTest, QuietIsQuietAndOtherwiseItSaysWhichBackEndItGot) {
@@ -169,7 +224,8 @@ TEST_F(CaptureTest, QuietIsQuietAndOtherwiseItSaysWhichBackEndItGot) {
     EXPECT_EQ(quiet.status, 0);
     EXPECT_EQ(quiet.err, "");
     EXPECT_EQ(quiet.out, "");
-    const ProcessResult loud = capture({clear, "-o", "a.png", "--size", "16x16", "--backend", "osmesa"});
+    const ProcessResult loud =
+        capture({clear, "-o", "a.png", "--size", "16x16", "--backend", "osmesa"});
     EXPECT_EQ(loud.status, 0) << loud.err;
     EXPECT_THAT(loud.err, HasSubstr("osmesa"));
     EXPECT_THAT(loud.err, HasSubstr("wrote a.png"));
@@ -179,7 +235,8 @@ TEST_F(CaptureTest, CtrlCLeavesTheLastGoodPictureAndNothingHalfWritten) {
     ASSERT_TRUE(writeFileAtomically(options.folder / "a.exr", "the last good picture").ok());
     const size_t before = fileCount();
     options.interruptAfterSeconds = 2;
-    const ProcessResult result = capture({foggy, "-o", "a.exr", "--size", "256x256", "--frames", "100000", "--report", "r.json", "--quiet"});
+    const ProcessResult result = capture({foggy, "-o", "a.exr", "--size", "256x256", "--frames",
+                                          "100000", "--report", "r.json", "--quiet"});
     EXPECT_EQ(result.status, 1) << "signal " << result.signal;
     EXPECT_THAT(result.err, HasSubstr("interrupted"));
     EXPECT_EQ(content("a.exr"), "the last good picture");
@@ -193,7 +250,8 @@ TEST_F(CaptureTest, AnOutputThatCannotBeWrittenFailsWithStatusOne) {
     EXPECT_EQ(result.status, 1);
     EXPECT_THAT(result.err, HasSubstr("a.exr"));
     EXPECT_EQ(fileCount(), before);
-    const ProcessResult full = capture({clear, "-o", "b.exr", "--size", "16x16", "--quiet", "--report", "/dev/full"});
+    const ProcessResult full =
+        capture({clear, "-o", "b.exr", "--size", "16x16", "--quiet", "--report", "/dev/full"});
     EXPECT_EQ(full.status, 1);
     EXPECT_THAT(full.err, HasSubstr("No space left"));
 }
@@ -210,16 +268,24 @@ TEST_F(CaptureTest, ABareModelGetsACameraAndALightAndSaysSo) {
 
 TEST_F(CaptureTest, ASharedEffectGivesTheSamePictureAsTheBuiltInOne) {
     ASSERT_EQ(capture({foggy, "-o", "plain.exr", "--size", "32x32", "--quiet"}).status, 0);
-    ASSERT_EQ(capture({foggy, "-o", "a.exr", "--size", "32x32", "--set", "tint.enabled=true", "--set", "tint.red=0.5", "--quiet"}).status, 0);
-    const ProcessResult shared = capture({foggy, "-o", "b.exr", "--size", "32x32", "--set", "tint.enabled=true", "--set", "tint.red=0.5", "--plugin", "example_tint", "--quiet"});
+    ASSERT_EQ(capture({foggy, "-o", "a.exr", "--size", "32x32", "--set", "tint.enabled=true",
+                       "--set", "tint.red=0.5", "--quiet"})
+                  .status,
+              0);
+    const ProcessResult shared =
+        capture({foggy, "-o", "b.exr", "--size", "32x32", "--set", "tint.enabled=true", "--set",
+                 "tint.red=0.5", "--plugin", "example_tint", "--quiet"});
     ASSERT_EQ(shared.status, 0) << shared.err;
     EXPECT_EQ(exr("a.exr").layers[0].image.pixels, exr("b.exr").layers[0].image.pixels);
-    EXPECT_NE(exr("a.exr").layers[0].image.pixels, exr("plain.exr").layers[0].image.pixels) << "the effect has an effect";
+    EXPECT_NE(exr("a.exr").layers[0].image.pixels, exr("plain.exr").layers[0].image.pixels)
+        << "the effect has an effect";
 }
 
 TEST_F(CaptureTest, ASharedTechniqueGivesTheSamePictureAsTheBuiltInOne) {
-    ASSERT_EQ(capture({foggy, "-o", "a.exr", "--size", "32x32", "--gi", "octaves", "--quiet"}).status, 0);
-    const ProcessResult shared = capture({foggy, "-o", "b.exr", "--size", "32x32", "--gi", "octaves", "--plugin", "volumetric_gi", "--quiet"});
+    ASSERT_EQ(
+        capture({foggy, "-o", "a.exr", "--size", "32x32", "--gi", "octaves", "--quiet"}).status, 0);
+    const ProcessResult shared = capture({foggy, "-o", "b.exr", "--size", "32x32", "--gi",
+                                          "octaves", "--plugin", "volumetric_gi", "--quiet"});
     ASSERT_EQ(shared.status, 0) << shared.err;
     EXPECT_EQ(exr("a.exr").layers[0].image.pixels, exr("b.exr").layers[0].image.pixels);
 }

@@ -22,8 +22,10 @@ using ::testing::StartsWith;
 TEST(CommandLine, HelpHasExamplesAndListsOnlyWhatThereIs) {
     const ProcessResult help = tyndall({"--help"});
     EXPECT_EQ(help.status, 0) << help.err;
-    EXPECT_THAT(help.out, AllOf(HasSubstr("Examples:"), HasSubstr("capture"), HasSubstr("graph"), HasSubstr("info")));
-    for (const char* absent : {"reference", "compare", "bench", "stress"}) EXPECT_THAT(help.out, Not(HasSubstr(absent)));
+    EXPECT_THAT(help.out, AllOf(HasSubstr("Examples:"), HasSubstr("capture"), HasSubstr("graph"),
+                                HasSubstr("info")));
+    for (const char* absent : {"reference", "compare", "bench", "stress"})
+        EXPECT_THAT(help.out, Not(HasSubstr(absent)));
     for (const char* command : {"capture", "graph", "info"}) {
         const ProcessResult each = tyndall({command, "--help"});
         EXPECT_EQ(each.status, 0) << each.err;
@@ -34,8 +36,12 @@ TEST(CommandLine, HelpHasExamplesAndListsOnlyWhatThereIs) {
 
 TEST(CommandLine, CaptureHelpHasEveryOptionOfTheInterface) {
     const std::string help = tyndall({"capture", "--help"}).out;
-    for (const char* option : {"SCENE", "-o,", "--size", "--backend", "--gi", "--terms", "--quality", "--set", "--frames", "--time-step", "--time ", "--converge", "--camera",
-                               "--seed", "--device", "--aov", "--report", "--trace", "--max-ms", "--fail-on-nonfinite", "--quiet"})
+    for (const char* option :
+         {"SCENE",   "-o,",        "--size",   "--backend", "--gi",
+          "--terms", "--quality",  "--set",    "--frames",  "--time-step",
+          "--time ", "--converge", "--camera", "--seed",    "--device",
+          "--aov",   "--report",   "--trace",  "--max-ms",  "--fail-on-nonfinite",
+          "--quiet"})
         EXPECT_THAT(help, HasSubstr(option));
 }
 
@@ -44,7 +50,8 @@ TEST(CommandLine, VersionIsTheProgramAndThreeNumbers) {
         if (!fs::exists(binDir() / name)) continue; // the editor can be left out of a build
         const ProcessResult result = run({(binDir() / name).string(), "--version"});
         EXPECT_EQ(result.status, 0) << result.err;
-        EXPECT_THAT(result.out, ::testing::MatchesRegex(std::string(name) + " [0-9]+\\.[0-9]+\\.[0-9]+\n"));
+        EXPECT_THAT(result.out,
+                    ::testing::MatchesRegex(std::string(name) + " [0-9]+\\.[0-9]+\\.[0-9]+\n"));
     }
 }
 
@@ -58,13 +65,19 @@ struct Refusal {
 const Refusal kRefusals[] = {
     {"no command", {}, "capture, graph or info"},
     {"an unknown command", {"captur"}, "did you mean 'capture'?"},
-    {"an unknown option", {"capture", "SCENE", "-o", "OUT", "--frame", "2"}, "did you mean '--frames'?"},
+    {"an unknown option",
+     {"capture", "SCENE", "-o", "OUT", "--frame", "2"},
+     "did you mean '--frames'?"},
     {"no output", {"capture", "SCENE"}, "--output"},
     {"no scene", {"capture", "-o", "OUT"}, "SCENE"},
     {"a wrong ending", {"capture", "SCENE", "-o", "a.jpg"}, ".exr or .png"},
     {"a missing folder", {"capture", "SCENE", "-o", "no/such/a.exr"}, "no folder 'no/such'"},
-    {"a missing folder of the report", {"capture", "SCENE", "-o", "OUT", "--report", "no/a.json"}, "--report no/a.json"},
-    {"a size without height", {"capture", "SCENE", "-o", "OUT", "--size", "64"}, "such as 1280x720"},
+    {"a missing folder of the report",
+     {"capture", "SCENE", "-o", "OUT", "--report", "no/a.json"},
+     "--report no/a.json"},
+    {"a size without height",
+     {"capture", "SCENE", "-o", "OUT", "--size", "64"},
+     "such as 1280x720"},
     {"a size of nothing", {"capture", "SCENE", "-o", "OUT", "--size", "0x10"}, "1 to 16384"},
     {"an absurd size", {"capture", "SCENE", "-o", "OUT", "--size", "99999x10"}, "1 to 16384"},
     {"an unknown back end", {"capture", "SCENE", "-o", "OUT", "--backend", "vulkan"}, "osmesa"},
@@ -73,12 +86,22 @@ const Refusal kRefusals[] = {
     {"an unknown layer", {"capture", "SCENE", "-o", "OUT", "--aov", "depht"}, "transmittance"},
     {"layers in a PNG", {"capture", "SCENE", "-o", "a.png", "--aov", "depth"}, ".exr"},
     {"no frames", {"capture", "SCENE", "-o", "OUT", "--frames", "0"}, "--frames"},
-    {"a sequence that converges", {"capture", "SCENE", "-o", "a-%04d.exr", "--converge"}, "--converge"},
-    {"a plugin that is not there", {"capture", "SCENE", "-o", "OUT", "--plugin", "nosuch"}, "nosuch.so"},
-    {"a scene that is not there", {"capture", "nosuch.scene.json", "-o", "OUT"}, "nosuch.scene.json"},
+    {"a sequence that converges",
+     {"capture", "SCENE", "-o", "a-%04d.exr", "--converge"},
+     "--converge"},
+    {"a plugin that is not there",
+     {"capture", "SCENE", "-o", "OUT", "--plugin", "nosuch"},
+     "nosuch.so"},
+    {"a scene that is not there",
+     {"capture", "nosuch.scene.json", "-o", "OUT"},
+     "nosuch.scene.json"},
     {"an unknown kind of scene", {"capture", "scene.txt", "-o", "OUT"}, "scene.txt"},
-    {"a camera that is not there", {"capture", "SCENE", "-o", "OUT", "--camera", "eie"}, "did you mean 'eye'?"},
-    {"an unknown setting", {"capture", "SCENE", "-o", "OUT", "--set", "no.such.setting=1"}, "no.such.setting"},
+    {"a camera that is not there",
+     {"capture", "SCENE", "-o", "OUT", "--camera", "eie"},
+     "did you mean 'eye'?"},
+    {"an unknown setting",
+     {"capture", "SCENE", "-o", "OUT", "--set", "no.such.setting=1"},
+     "no.such.setting"},
     {"no assignment", {"capture", "SCENE", "-o", "OUT", "--set", "novalue"}, "KEY=VALUE"},
     {"a technique that is not there", {"capture", "SCENE", "-o", "OUT", "--gi", "lpv"}, "octaves"},
     {"an unknown format", {"graph", "SCENE", "--format", "svg"}, "text"},
@@ -93,14 +116,16 @@ TEST(CommandLine, WhatIsWrongIsRefusedWithOneSentenceAndStatusTwo) {
     for (const Refusal& refusal : kRefusals) {
         std::vector<std::string> arguments = refusal.arguments;
         if (!arguments.empty()) arguments.push_back("--quiet");
-        for (std::string& argument : arguments) argument = argument == "SCENE" ? scene : argument == "OUT" ? "out.exr" : argument;
+        for (std::string& argument : arguments)
+            argument = argument == "SCENE" ? scene : argument == "OUT" ? "out.exr" : argument;
         const ProcessResult result = tyndall(arguments, options);
         EXPECT_EQ(result.status, 2) << refusal.what << ": " << result.err;
         EXPECT_THAT(result.err, HasSubstr(refusal.sentence)) << refusal.what;
         EXPECT_EQ(result.out, "") << refusal.what;
         if (!refusal.arguments.empty()) {
             EXPECT_THAT(result.err, StartsWith("tyndall: ")) << refusal.what;
-            EXPECT_EQ(std::count(result.err.begin(), result.err.end(), '\n'), 1) << refusal.what << ": " << result.err;
+            EXPECT_EQ(std::count(result.err.begin(), result.err.end(), '\n'), 1)
+                << refusal.what << ": " << result.err;
         }
         EXPECT_FALSE(fs::exists(options.folder / "out.exr")) << refusal.what;
     }
@@ -108,7 +133,8 @@ TEST(CommandLine, WhatIsWrongIsRefusedWithOneSentenceAndStatusTwo) {
 
 TEST(CommandLine, DamagedFilesAreRefusedByInfo) {
     const fs::path folder = scratchDir("damaged");
-    for (const char* name : {"a.scene.json", "a.gltf", "a.glb", "a.vdb", "a.nvdb", "a.exr", "a.hdr"}) {
+    for (const char* name :
+         {"a.scene.json", "a.gltf", "a.glb", "a.vdb", "a.nvdb", "a.exr", "a.hdr"}) {
         const fs::path file = folder / name;
         std::ofstream(file) << "this is not what the name promises";
         const ProcessResult result = tyndall({"info", file.string()});
@@ -121,23 +147,30 @@ TEST(CommandLine, DamagedFilesAreRefusedByInfo) {
 TEST(Info, NamesTheBackEndThatItChoseAndTheTechniques) {
     const ProcessResult result = tyndall({"info"});
     ASSERT_EQ(result.status, 0) << result.err;
-    EXPECT_THAT(result.out, AllOf(HasSubstr("egl surfaceless"), HasSubstr("osmesa"), HasSubstr("Chosen: "), HasSubstr("OpenGL 4."), HasSubstr("octaves")));
+    EXPECT_THAT(result.out,
+                AllOf(HasSubstr("egl surfaceless"), HasSubstr("osmesa"), HasSubstr("Chosen: "),
+                      HasSubstr("OpenGL 4."), HasSubstr("octaves")));
 }
 
 TEST(Info, ListsSettingsThatCaptureTakesBack) {
     const ProcessResult result = tyndall({"info", "--settings"});
     ASSERT_EQ(result.status, 0) << result.err;
-    EXPECT_THAT(result.out, AllOf(HasSubstr("; default "), HasSubstr("--quality low:"), HasSubstr("--quality ultra:")));
+    EXPECT_THAT(result.out, AllOf(HasSubstr("; default "), HasSubstr("--quality low:"),
+                                  HasSubstr("--quality ultra:")));
     // A key stands alone on its line.
     std::istringstream lines(result.out);
     std::string line, key;
     while (std::getline(lines, line))
-        if (key.empty() && line.find('.') != std::string::npos && line.find(' ') == std::string::npos) key = line;
+        if (key.empty() && line.find('.') != std::string::npos &&
+            line.find(' ') == std::string::npos)
+            key = line;
     ASSERT_NE(key, "") << result.out;
     ProcessOptions options;
     options.folder = scratchDir("settings");
     const std::string scene = writeClearScene(options.folder).filename().string();
-    const ProcessResult wrong = tyndall({"capture", scene, "-o", "a.exr", "--size", "8x8", "--quiet", "--set", key + "=not-a-value"}, options);
+    const ProcessResult wrong = tyndall({"capture", scene, "-o", "a.exr", "--size", "8x8",
+                                         "--quiet", "--set", key + "=not-a-value"},
+                                        options);
     EXPECT_EQ(wrong.status, 2);
     EXPECT_THAT(wrong.err, HasSubstr("'" + key + "' = 'not-a-value'"));
 }
@@ -146,14 +179,17 @@ TEST(Info, SaysWhatIsInASceneFile) {
     const fs::path scene = writeFoggyScene(scratchDir("info-scene"));
     const ProcessResult result = tyndall({"info", scene.string()});
     ASSERT_EQ(result.status, 0) << result.err;
-    EXPECT_THAT(result.out, AllOf(HasSubstr("12 triangles"), HasSubstr("light 'lamp': point"), HasSubstr("medium 'haze': height"), HasSubstr("camera 'eye': perspective")));
+    EXPECT_THAT(result.out,
+                AllOf(HasSubstr("12 triangles"), HasSubstr("light 'lamp': point"),
+                      HasSubstr("medium 'haze': height"), HasSubstr("camera 'eye': perspective")));
 }
 
 TEST(Info, SaysWhatIsInAVolume) {
     const auto smoke = REQUIRE_CONTENT("vdb/smoke1.vdb");
     const ProcessResult result = tyndall({"info", smoke.string()});
     ASSERT_EQ(result.status, 0) << result.err;
-    EXPECT_THAT(result.out, AllOf(HasSubstr("OpenVDB"), HasSubstr("grid 'density': float"), HasSubstr("active voxels"), HasSubstr("understood")));
+    EXPECT_THAT(result.out, AllOf(HasSubstr("OpenVDB"), HasSubstr("grid 'density': float"),
+                                  HasSubstr("active voxels"), HasSubstr("understood")));
 }
 
 TEST(Graph, ComesInThreeFormats) {
@@ -162,9 +198,11 @@ TEST(Graph, ComesInThreeFormats) {
     const ProcessResult text = tyndall({"graph", scene, "--size", "32x32", "--quiet"});
     ASSERT_EQ(text.status, 0) << text.err;
     EXPECT_THAT(text.out, HasSubstr("gbuffer"));
-    const ProcessResult dot = tyndall({"graph", scene, "--size", "32x32", "--quiet", "--format", "dot"});
+    const ProcessResult dot =
+        tyndall({"graph", scene, "--size", "32x32", "--quiet", "--format", "dot"});
     EXPECT_THAT(dot.out, StartsWith("digraph")) << dot.err;
-    const ProcessResult json = tyndall({"graph", scene, "--size", "32x32", "--quiet", "--format", "json", "-o", (folder / "g.json").string()});
+    const ProcessResult json = tyndall({"graph", scene, "--size", "32x32", "--quiet", "--format",
+                                        "json", "-o", (folder / "g.json").string()});
     EXPECT_EQ(json.status, 0) << json.err;
     EXPECT_EQ(json.out, "");
     EXPECT_TRUE(fs::exists(folder / "g.json"));

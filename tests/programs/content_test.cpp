@@ -25,10 +25,13 @@ namespace fs = std::filesystem;
 
 bool longRun() { return std::getenv("TYNDALL_LONG_TESTS") != nullptr; }
 
-std::vector<fs::path> filesUnder(const fs::path& folder, const std::vector<std::string>& extensions) {
+std::vector<fs::path> filesUnder(const fs::path& folder,
+                                 const std::vector<std::string>& extensions) {
     std::vector<fs::path> files;
     for (const auto& entry : fs::recursive_directory_iterator(folder))
-        if (entry.is_regular_file() && std::find(extensions.begin(), extensions.end(), entry.path().extension()) != extensions.end()) files.push_back(entry.path());
+        if (entry.is_regular_file() && std::find(extensions.begin(), extensions.end(),
+                                                 entry.path().extension()) != extensions.end())
+            files.push_back(entry.path());
     std::sort(files.begin(), files.end());
     return files;
 }
@@ -44,8 +47,11 @@ std::string complaint(const std::string& file, const ProcessResult& result) {
     std::string why;
     if (!endedByItself(result, why)) return file + ": " + why;
     if (result.status == 0) return {};
-    if (result.status != 2) return file + ": exit status " + std::to_string(result.status) + ": " + result.err;
-    if (!result.err.starts_with("tyndall: ") || std::count(result.err.begin(), result.err.end(), '\n') != 1) return file + ": not one sentence: " + result.err;
+    if (result.status != 2)
+        return file + ": exit status " + std::to_string(result.status) + ": " + result.err;
+    if (!result.err.starts_with("tyndall: ") ||
+        std::count(result.err.begin(), result.err.end(), '\n') != 1)
+        return file + ": not one sentence: " + result.err;
     return {};
 }
 
@@ -81,12 +87,15 @@ std::vector<std::string> renderAll(const std::vector<fs::path>& files) {
         if (log) std::ofstream(log, std::ios::app) << file.string() << std::endl;
         const Result<LoadedScene> loaded = loadScene(file);
         if (!loaded.ok()) {
-            if (loaded.message().find(file.filename().string()) == std::string::npos) complaints.push_back(file.string() + ": not named in: " + loaded.message());
-            if (loaded.message().find('\n') != std::string::npos) complaints.push_back(file.string() + ": not one sentence: " + loaded.message());
+            if (loaded.message().find(file.filename().string()) == std::string::npos)
+                complaints.push_back(file.string() + ": not named in: " + loaded.message());
+            if (loaded.message().find('\n') != std::string::npos)
+                complaints.push_back(file.string() + ": not one sentence: " + loaded.message());
             continue;
         }
         try {
-            const ::testing::ScopedTrace trace(__FILE__, __LINE__, file.string()); // non-finite pixels fail in there
+            const ::testing::ScopedTrace trace(__FILE__, __LINE__,
+                                               file.string()); // non-finite pixels fail in there
             (void)sharedRenderer().render(loaded->scene, options);
         } catch (const std::exception& failure) {
             complaints.push_back(file.string() + ": " + failure.what());
@@ -96,7 +105,9 @@ std::vector<std::string> renderAll(const std::vector<fs::path>& files) {
 }
 
 std::vector<std::string> describeAll(const std::vector<fs::path>& files) {
-    return forEach(files, [](const fs::path& file, int) { return complaint(file.string(), tyndall({"info", file.string()})); });
+    return forEach(files, [](const fs::path& file, int) {
+        return complaint(file.string(), tyndall({"info", file.string()}));
+    });
 }
 
 TEST(Content, InvalidGltfFilesAreUnderstoodOrRefused) {
@@ -146,13 +157,18 @@ void damage(const fs::path& original, const std::string& name) {
         const int index = number++;
         std::mt19937_64 random(seed() * 1000003 + uint64_t(index));
         std::string bad = good;
-        if (index % 2) bad.resize(random() % good.size());
+        if (index % 2)
+            bad.resize(random() % good.size());
         else
-            for (uint64_t flips = 1 + random() % 8; flips > 0; --flips) bad[random() % bad.size()] ^= char(1 << (random() % 8));
+            for (uint64_t flips = 1 + random() % 8; flips > 0; --flips)
+                bad[random() % bad.size()] ^= char(1 << (random() % 8));
         const fs::path file = folder / (std::to_string(index) + original.extension().string());
-        if (!writeFileAtomically(file, bad).ok()) return std::string("cannot write ") + file.string();
-        const std::string wrong = complaint(original.filename().string() + " case " + std::to_string(index) + " seed " + std::to_string(seed()),
-                                            tyndall({"info", file.string()}));
+        if (!writeFileAtomically(file, bad).ok())
+            return std::string("cannot write ") + file.string();
+        const std::string wrong =
+            complaint(original.filename().string() + " case " + std::to_string(index) + " seed " +
+                          std::to_string(seed()),
+                      tyndall({"info", file.string()}));
         fs::remove(file);
         return wrong;
     });
@@ -161,8 +177,12 @@ void damage(const fs::path& original, const std::string& name) {
 
 TEST(Damage, SceneFile) { damage(writeFoggyScene(scratchDir("damage-original")), "scene"); }
 TEST(Damage, Glb) { damage(REQUIRE_CONTENT("gltf/compressed/BoxTextured-quantized.glb"), "glb"); }
-TEST(Damage, Gltf) { damage(REQUIRE_CONTENT("gltf/khronos/BoxVertexColors/BoxVertexColors.gltf"), "gltf"); }
-TEST(Damage, DracoGlb) { damage(REQUIRE_CONTENT("gltf/compressed/BoxTextured-draco.glb"), "draco"); }
+TEST(Damage, Gltf) {
+    damage(REQUIRE_CONTENT("gltf/khronos/BoxVertexColors/BoxVertexColors.gltf"), "gltf");
+}
+TEST(Damage, DracoGlb) {
+    damage(REQUIRE_CONTENT("gltf/compressed/BoxTextured-draco.glb"), "draco");
+}
 TEST(Damage, OpenVdb) { damage(REQUIRE_CONTENT("vdb/sphere_fog_tiny.vdb"), "vdb"); }
 TEST(Damage, NanoVdb) { damage(REQUIRE_CONTENT("nvdb/wdas_cloud_sixteenth_fpN_zip.nvdb"), "nvdb"); }
 

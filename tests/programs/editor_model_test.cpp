@@ -37,14 +37,17 @@ void expectSame(const Scene& a, const Scene& b) {
         EXPECT_EQ(a.nodes[i].rotation, b.nodes[i].rotation) << i;
         EXPECT_EQ(a.nodes[i].scale, b.nodes[i].scale) << i;
         ASSERT_EQ(a.nodes[i].matrix.has_value(), b.nodes[i].matrix.has_value()) << i;
-        if (a.nodes[i].matrix) { EXPECT_TRUE(same(*a.nodes[i].matrix, *b.nodes[i].matrix)) << i; }
+        if (a.nodes[i].matrix) {
+            EXPECT_TRUE(same(*a.nodes[i].matrix, *b.nodes[i].matrix)) << i;
+        }
     }
     for (size_t i = 0; i < a.lights.size(); ++i) {
         EXPECT_EQ(a.lights[i].intensity, b.lights[i].intensity);
         EXPECT_EQ(a.lights[i].color, b.lights[i].color);
         EXPECT_EQ(a.lights[i].castsShadows, b.lights[i].castsShadows);
     }
-    for (size_t i = 0; i < a.media.size(); ++i) EXPECT_EQ(a.media[i].scattering, b.media[i].scattering);
+    for (size_t i = 0; i < a.media.size(); ++i)
+        EXPECT_EQ(a.media[i].scattering, b.media[i].scattering);
     EXPECT_EQ(a.ev100, b.ev100);
 }
 
@@ -79,7 +82,8 @@ TEST_F(CommandTest, UndoingAndRedoingEveryKindRestoresTheSceneExactly) {
         states.push_back(scene);
     };
     perform(changeVisibility(scene, 1, false));
-    perform(changeTransform(scene, 0, {1.0 / 3, -7, 1e9}, glm::angleAxis(0.7, dvec3(0, 1, 0)), {1, 2, -3}));
+    perform(changeTransform(scene, 0, {1.0 / 3, -7, 1e9}, glm::angleAxis(0.7, dvec3(0, 1, 0)),
+                            {1, 2, -3}));
     perform(changeTransform(scene, 1, {4, 5, 6}, {1, 0, 0, 0}, {1, 1, 1})); // it had a matrix
     perform(brighten(0.1f));
     Medium medium = scene.media[0];
@@ -110,7 +114,8 @@ TEST_F(CommandTest, WhatAnEditChangesGetsANewVersionAlsoWhenItIsUndone) {
     EXPECT_GT(after.lights, before.lights);
     EXPECT_EQ(after.transforms, before.transforms);
     history.undo();
-    EXPECT_GT(scene.versions.lights, after.lights) << "a cache that saw the edit must see that it went";
+    EXPECT_GT(scene.versions.lights, after.lights)
+        << "a cache that saw the edit must see that it went";
 }
 
 TEST_F(CommandTest, OneDragIsOneStep) {
@@ -134,7 +139,9 @@ TEST_F(CommandTest, EditsOfDifferentThingsAreDifferentStepsEvenWithoutAPause) {
 }
 
 TEST_F(CommandTest, SettingsComeBackToo) {
-    history.perform(changeSettings(settings, "a preset", {{"test.strength", "2.5"}, {"test.steps", "16"}, {"test.strength", "3.5"}}));
+    history.perform(
+        changeSettings(settings, "a preset",
+                       {{"test.strength", "2.5"}, {"test.steps", "16"}, {"test.strength", "3.5"}}));
     EXPECT_EQ(values.strength, 3.5f);
     EXPECT_EQ(values.steps, 16);
     history.undo();
@@ -183,12 +190,17 @@ dmat4 lookingFrom(const dvec3& position, const dquat& rotation = {1, 0, 0, 0}) {
 
 constexpr double kTiny = 1e-9; // relative to lengths of about one: some hundred roundings
 
-void expectNear(const dvec3& a, const dvec3& b, double tolerance = kTiny) { EXPECT_LT(glm::length(a - b), tolerance) << a.x << " " << a.y << " " << a.z << " is not " << b.x << " " << b.y << " " << b.z; }
+void expectNear(const dvec3& a, const dvec3& b, double tolerance = kTiny) {
+    EXPECT_LT(glm::length(a - b), tolerance)
+        << a.x << " " << a.y << " " << a.z << " is not " << b.x << " " << b.y << " " << b.z;
+}
 
 TEST(Camera, StartsWhereTheScenesCameraIsWithoutItsScale) {
     const dquat rotation = glm::normalize(dquat(0.9, 0.1, -0.3, 0.05));
     CameraController camera;
-    camera.reset(lookingFrom({1, 2, 3}, rotation) * dmat4(dvec4(2, 0, 0, 0), dvec4(0, 3, 0, 0), dvec4(0, 0, 4, 0), dvec4(0, 0, 0, 1)), 10);
+    camera.reset(lookingFrom({1, 2, 3}, rotation) * dmat4(dvec4(2, 0, 0, 0), dvec4(0, 3, 0, 0),
+                                                          dvec4(0, 0, 4, 0), dvec4(0, 0, 0, 1)),
+                 10);
     const dmat4 pose = camera.worldFromCamera(), expected = lookingFrom({1, 2, 3}, rotation);
     for (int c = 0; c < 4; ++c) expectNear(dvec3(pose[c]), dvec3(expected[c]));
 }
@@ -217,7 +229,8 @@ TEST(Camera, DoesNotTurnOverTheZenith) {
 
 TEST(Camera, FliesAlongItsAxesAtItsSpeed) {
     CameraController camera;
-    camera.reset(lookingFrom({0, 0, 0}, glm::angleAxis(kPi / 2, dvec3(0, 1, 0))), 10); // looks along -X
+    camera.reset(lookingFrom({0, 0, 0}, glm::angleAxis(kPi / 2, dvec3(0, 1, 0))),
+                 10); // looks along -X
     const double speed = camera.speed();
     camera.fly({0, 0, 1}, 2);
     expectNear(camera.position(), {-2 * speed, 0, 0});
@@ -243,7 +256,8 @@ TEST(Camera, PanningMovesWhatIsAtThePivotWithTheCursor) {
     CameraController camera;
     camera.reset(lookingFrom({0, 0, 5}), 10);
     const dvec3 pivot = camera.pivot();
-    const double height = 400, yfov = 0.8, metresPerPixel = 2 * camera.pivotDistance() * std::tan(yfov / 2) / height;
+    const double height = 400, yfov = 0.8,
+                 metresPerPixel = 2 * camera.pivotDistance() * std::tan(yfov / 2) / height;
     camera.pan({30, 12}, metresPerPixel);
     const dvec3 seen = glm::inverse(camera.worldFromCamera()) * dvec4(pivot, 1);
     const double pixelsPerTangent = height / 2 / std::tan(yfov / 2);
@@ -276,7 +290,8 @@ TEST(Camera, FramingBringsAllCornersIntoThePicture) {
             const dvec3 corner((i & 1) ? 5 : -3, (i & 2) ? 101 : 100, (i & 4) ? 20 : 7);
             const dvec3 p = cameraFromWorld * dvec4(corner, 1);
             ASSERT_LT(p.z, 0) << "in front of the camera";
-            const double vertical = std::abs(p.y / p.z) / std::tan(yfov / 2), horizontal = std::abs(p.x / p.z) / (aspect * std::tan(yfov / 2));
+            const double vertical = std::abs(p.y / p.z) / std::tan(yfov / 2),
+                         horizontal = std::abs(p.x / p.z) / (aspect * std::tan(yfov / 2));
             EXPECT_LE(vertical, 1);
             EXPECT_LE(horizontal, 1);
             most = std::max({most, vertical, horizontal});

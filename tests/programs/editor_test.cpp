@@ -29,7 +29,8 @@ struct EditorTest : ::testing::Test {
         // What a user's settings are must not matter, nor whether a display is there.
         const fs::path home = options.folder / "home";
         fs::create_directories(home);
-        options.environment = std::vector<std::string>{"PATH=/usr/bin:/bin", "HOME=" + home.string(), "LIBGL_ALWAYS_SOFTWARE=1"};
+        options.environment = std::vector<std::string>{
+            "PATH=/usr/bin:/bin", "HOME=" + home.string(), "LIBGL_ALWAYS_SOFTWARE=1"};
     }
     static std::string program() { return (binDir() / "tyndall-editor").string(); }
     ProcessResult bare(std::vector<std::string> arguments) {
@@ -37,7 +38,8 @@ struct EditorTest : ::testing::Test {
         return run(arguments, options);
     }
     ProcessResult editor(std::vector<std::string> arguments) {
-        arguments.insert(arguments.begin(), {kXvfbRun, "-a", "-s", "-screen 0 1280x800x24", program()});
+        arguments.insert(arguments.begin(),
+                         {kXvfbRun, "-a", "-s", "-screen 0 1280x800x24", program()});
         return run(arguments, options);
     }
     [[nodiscard]] std::string file(const std::string& name) const {
@@ -45,11 +47,13 @@ struct EditorTest : ::testing::Test {
         return bytes.ok() ? *bytes : "";
     }
     void expectSamePicture(const std::vector<std::string>& both) {
-        std::vector<std::string> shown{foggy, "--size", "160x120", "--frames", "3", "--hidden", "--screenshot", "shown.png"};
+        std::vector<std::string> shown{foggy, "--size",   "160x120",      "--frames",
+                                       "3",   "--hidden", "--screenshot", "shown.png"};
         shown.insert(shown.end(), both.begin(), both.end());
         const ProcessResult window = editor(shown);
         ASSERT_EQ(window.status, 0) << window.err;
-        std::vector<std::string> captured{"capture", foggy, "--size", "160x120", "-o", "captured.png"};
+        std::vector<std::string> captured{"capture", foggy, "--size",
+                                          "160x120", "-o",  "captured.png"};
         captured.insert(captured.end(), both.begin(), both.end());
         const ProcessResult headless = tyndall(captured, options);
         ASSERT_EQ(headless.status, 0) << headless.err;
@@ -59,7 +63,7 @@ struct EditorTest : ::testing::Test {
     }
 };
 
-#define REQUIRE_DISPLAY()                                                                                                          \
+#define REQUIRE_DISPLAY()                                                                          \
     if (!fs::exists(kXvfbRun)) GTEST_SKIP() << "xvfb-run is not here: the editor needs a display"
 
 TEST_F(EditorTest, TheViewportShowsWhatCaptureRenders) {
@@ -69,20 +73,31 @@ TEST_F(EditorTest, TheViewportShowsWhatCaptureRenders) {
 
 TEST_F(EditorTest, SettingsTechniqueAndPoseMeanTheSameInBoth) {
     REQUIRE_DISPLAY();
-    expectSamePicture({"--set", "post.toneCurve=aces", "--gi", "none", "--pose=1,1.5,4,0,0.1,0,0.99498743710662"});
+    expectSamePicture({"--set", "post.toneCurve=aces", "--gi", "none",
+                       "--pose=1,1.5,4,0,0.1,0,0.99498743710662"});
 }
 
 TEST_F(EditorTest, ThePoseOfTheSceneCameraMakesTheSceneCamerasPicture) {
     ASSERT_EQ(tyndall({"capture", foggy, "--size", "64x48", "-o", "node.png"}, options).status, 0);
-    ASSERT_EQ(tyndall({"capture", foggy, "--size", "64x48", "--pose", "0,1,5,0,0,0,1,0.8", "-o", "pose.png"}, options).status, 0);
-    ASSERT_EQ(tyndall({"capture", foggy, "--size", "64x48", "--pose", "1,1,5,0,0,0,1", "-o", "moved.png"}, options).status, 0);
+    ASSERT_EQ(tyndall({"capture", foggy, "--size", "64x48", "--pose", "0,1,5,0,0,0,1,0.8", "-o",
+                       "pose.png"},
+                      options)
+                  .status,
+              0);
+    ASSERT_EQ(
+        tyndall({"capture", foggy, "--size", "64x48", "--pose", "1,1,5,0,0,0,1", "-o", "moved.png"},
+                options)
+            .status,
+        0);
     EXPECT_EQ(file("node.png"), file("pose.png"));
     EXPECT_NE(file("node.png"), file("moved.png"));
 }
 
 TEST_F(EditorTest, AWrongPoseIsRefusedWithOneSentence) {
-    for (const char* pose : {"1,2,3", "1,2,3,0,0,0,0", "1,2,3,0,0,0,x", "1,2,3,0,0,0,1,", "1,2,3,0,0,0,1,4", "nan,2,3,0,0,0,1", "1,2,3,0,0,0,1,1,1"}) {
-        const ProcessResult result = tyndall({"capture", foggy, "--pose", pose, "-o", "a.png"}, options);
+    for (const char* pose : {"1,2,3", "1,2,3,0,0,0,0", "1,2,3,0,0,0,x", "1,2,3,0,0,0,1,",
+                             "1,2,3,0,0,0,1,4", "nan,2,3,0,0,0,1", "1,2,3,0,0,0,1,1,1"}) {
+        const ProcessResult result =
+            tyndall({"capture", foggy, "--pose", pose, "-o", "a.png"}, options);
         EXPECT_EQ(result.status, 2) << pose;
         EXPECT_THAT(result.err, StartsWith(std::string("tyndall: --pose ") + pose + ": ")) << pose;
     }
@@ -90,7 +105,8 @@ TEST_F(EditorTest, AWrongPoseIsRefusedWithOneSentence) {
 
 TEST_F(EditorTest, AWindowThatIsShownDrawsAllPanesAndLeavesItsLayoutInTheUsersFolder) {
     REQUIRE_DISPLAY();
-    const ProcessResult result = editor({foggy, "--frames", "2", "--window", "900x600", "--size", "64x48", "--screenshot", "pane.png"});
+    const ProcessResult result = editor({foggy, "--frames", "2", "--window", "900x600", "--size",
+                                         "64x48", "--screenshot", "pane.png"});
     ASSERT_EQ(result.status, 0) << result.err;
     EXPECT_GT(file("pane.png").size(), 100u);
     EXPECT_THAT(file("home/.config/tyndall/imgui.ini"), HasSubstr("[Tyndall][Panes]"));
@@ -100,7 +116,8 @@ TEST_F(EditorTest, AWindowThatIsShownDrawsAllPanesAndLeavesItsLayoutInTheUsersFo
 TEST_F(EditorTest, WithoutADisplayItSaysSoInOneSentence) {
     const ProcessResult result = bare({foggy});
     EXPECT_EQ(result.status, 1);
-    EXPECT_THAT(result.err, AllOf(StartsWith("tyndall-editor: no window can be opened"), HasSubstr("tyndall capture")));
+    EXPECT_THAT(result.err, AllOf(StartsWith("tyndall-editor: no window can be opened"),
+                                  HasSubstr("tyndall capture")));
     EXPECT_EQ(std::count(result.err.begin(), result.err.end(), '\n'), 1);
 }
 
@@ -117,7 +134,9 @@ TEST_F(EditorTest, AWrongSceneIsRefusedBeforeAnyWindow) {
 TEST_F(EditorTest, HelpAndVersionNeedNoDisplay) {
     const ProcessResult help = bare({"--help"});
     EXPECT_EQ(help.status, 0) << help.err;
-    EXPECT_THAT(help.out, AllOf(HasSubstr("Examples:"), HasSubstr("--frames"), HasSubstr("--screenshot"), HasSubstr("--hidden"), HasSubstr("--pose")));
+    EXPECT_THAT(help.out,
+                AllOf(HasSubstr("Examples:"), HasSubstr("--frames"), HasSubstr("--screenshot"),
+                      HasSubstr("--hidden"), HasSubstr("--pose")));
     const ProcessResult version = bare({"--version"});
     EXPECT_EQ(version.status, 0);
     EXPECT_THAT(version.out, StartsWith("tyndall-editor "));
@@ -125,7 +144,11 @@ TEST_F(EditorTest, HelpAndVersionNeedNoDisplay) {
 
 TEST_F(EditorTest, CombinationsThatMakeNoSenseAreRefused) {
     for (const std::vector<std::string>& arguments :
-         {std::vector<std::string>{foggy, "--screenshot", "a.png"}, {foggy, "--hidden"}, {foggy, "--size", "0x0"}, {foggy, "--window", "big"}, {foggy, "--nothing"}}) {
+         {std::vector<std::string>{foggy, "--screenshot", "a.png"},
+          {foggy, "--hidden"},
+          {foggy, "--size", "0x0"},
+          {foggy, "--window", "big"},
+          {foggy, "--nothing"}}) {
         const ProcessResult result = bare(arguments);
         EXPECT_EQ(result.status, 2) << arguments[1];
         EXPECT_THAT(result.err, HasSubstr(arguments[1])) << result.err;

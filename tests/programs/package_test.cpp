@@ -18,8 +18,9 @@ namespace fs = std::filesystem;
 using ::testing::HasSubstr;
 
 /// Libraries that every Linux with a GL driver has, and the two of which the younger must win.
-const std::regex kFromTheSystem("(ld-linux|linux-vdso|lib(c|m|dl|rt|pthread|util|resolv|mvec)\\.so|libstdc\\+\\+|libgcc_s|libGL|libEGL|libOpenGL|libgbm|libdrm|"
-                                "libX|libxcb|libwayland|libxkbcommon|libbsd|libmd).*"); // the last two come with libX11
+const std::regex kFromTheSystem(
+    "(ld-linux|linux-vdso|lib(c|m|dl|rt|pthread|util|resolv|mvec)\\.so|libstdc\\+\\+|libgcc_s|libGL|libEGL|libOpenGL|libgbm|libdrm|"
+    "libX|libxcb|libwayland|libxkbcommon|libbsd|libmd).*"); // the last two come with libX11
 
 class PackageTest : public ::testing::Test {
 public:
@@ -27,13 +28,16 @@ public:
         folder_ = scratchDir("package");
         ProcessOptions options;
         options.timeoutSeconds = 280;
-        made_ = run({(sourceDir() / "cmake/package.sh").string(), binDir().parent_path().string(), (folder_ / "dist").string()}, options);
+        made_ = run({(sourceDir() / "cmake/package.sh").string(), binDir().parent_path().string(),
+                     (folder_ / "dist").string()},
+                    options);
         if (made_.status != 0) return;
         std::istringstream lines(made_.out);
         std::string line, archive;
         while (std::getline(lines, line)) archive = line; // the last line names the file
         fs::create_directories(folder_ / "some where else");
-        unpacked_ = run({"/usr/bin/tar", "-xzf", archive, "-C", (folder_ / "some where else").string(), "--strip-components=1"});
+        unpacked_ = run({"/usr/bin/tar", "-xzf", archive, "-C",
+                         (folder_ / "some where else").string(), "--strip-components=1"});
         archiveBytes_ = fs::file_size(archive);
     }
 
@@ -50,12 +54,16 @@ protected:
         empty.environment.emplace();
         empty.folder = folder_;
     }
-    [[nodiscard]] std::string program(const char* name) const { return (root / "bin" / name).string(); }
+    [[nodiscard]] std::string program(const char* name) const {
+        return (root / "bin" / name).string();
+    }
 };
 
 TEST_F(PackageTest, HoldsProgramsPluginsShadersScenesAndLicences) {
-    for (const char* file : {"bin/tyndall", "bin/tyndall-grid-reader", "lib/tyndall/plugins/volumetric_gi.so", "lib/tyndall/plugins/example_tint.so",
-                             "share/tyndall/shaders/variants.txt", "share/tyndall/content/demo.scene.json", "share/doc/tyndall/LICENSE"})
+    for (const char* file :
+         {"bin/tyndall", "bin/tyndall-grid-reader", "lib/tyndall/plugins/volumetric_gi.so",
+          "lib/tyndall/plugins/example_tint.so", "share/tyndall/shaders/variants.txt",
+          "share/tyndall/content/demo.scene.json", "share/doc/tyndall/LICENSE"})
         EXPECT_TRUE(fs::exists(root / file)) << file;
     EXPECT_FALSE(fs::is_empty(root / "share/doc/tyndall/licenses"));
     EXPECT_LT(archiveBytes_, 100u << 20) << "a download of reasonable size";
@@ -65,7 +73,8 @@ TEST_F(PackageTest, FindsEveryLibraryInsideItself) {
     int inside = 0;
     for (const auto& entry : fs::recursive_directory_iterator(root)) {
         const std::string name = entry.path().filename().string();
-        const bool isBinary = entry.path().parent_path() == root / "bin" || name.find(".so") != std::string::npos;
+        const bool isBinary =
+            entry.path().parent_path() == root / "bin" || name.find(".so") != std::string::npos;
         if (!entry.is_regular_file() || !isBinary) continue;
         const ProcessResult libraries = run({"/usr/bin/ldd", entry.path().string()}, empty);
         std::istringstream lines(libraries.out);
@@ -76,9 +85,11 @@ TEST_F(PackageTest, FindsEveryLibraryInsideItself) {
             words >> library >> arrow;
             if (arrow != "=>") continue;
             std::getline(words >> std::ws, path);
-            EXPECT_THAT(path, ::testing::Not(HasSubstr("not found"))) << entry.path() << " needs " << library;
+            EXPECT_THAT(path, ::testing::Not(HasSubstr("not found")))
+                << entry.path() << " needs " << library;
             if (std::regex_match(library, kFromTheSystem)) continue;
-            EXPECT_TRUE(path.starts_with(root.string())) << entry.path() << " takes " << library << " from " << path;
+            EXPECT_TRUE(path.starts_with(root.string()))
+                << entry.path() << " takes " << library << " from " << path;
             ++inside;
         }
     }
@@ -99,8 +110,10 @@ TEST_F(PackageTest, RunsInAnEmptyEnvironment) {
 
 TEST_F(PackageTest, RendersItsOwnSceneInAnEmptyEnvironment) {
     const fs::path output = folder_ / "demo.exr";
-    const ProcessResult result =
-        run({program("tyndall"), "capture", (root / "share/tyndall/content/demo.scene.json").string(), "-o", output.string(), "--size", "32x18", "--quiet", "--fail-on-nonfinite"}, empty);
+    const ProcessResult result = run(
+        {program("tyndall"), "capture", (root / "share/tyndall/content/demo.scene.json").string(),
+         "-o", output.string(), "--size", "32x18", "--quiet", "--fail-on-nonfinite"},
+        empty);
     ASSERT_EQ(result.status, 0) << result.err;
     double sum = 0;
     for (float value : readExr(output).value().layers[0].image.pixels) sum += double(value);
@@ -109,7 +122,10 @@ TEST_F(PackageTest, RendersItsOwnSceneInAnEmptyEnvironment) {
 
 TEST_F(PackageTest, LoadsItsPluginsByName) {
     const std::string scene = writeFoggyScene(folder_).string();
-    const ProcessResult result = run({program("tyndall"), "capture", scene, "-o", (folder_ / "p.exr").string(), "--size", "16x16", "--gi", "octaves", "--plugin", "volumetric_gi", "--quiet"}, empty);
+    const ProcessResult result =
+        run({program("tyndall"), "capture", scene, "-o", (folder_ / "p.exr").string(), "--size",
+             "16x16", "--gi", "octaves", "--plugin", "volumetric_gi", "--quiet"},
+            empty);
     EXPECT_EQ(result.status, 0) << result.err;
 }
 

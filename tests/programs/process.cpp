@@ -24,7 +24,8 @@ std::vector<char*> pointers(const std::vector<std::string>& texts) {
 }
 
 /// The child's side: between fork and exec only calls that are safe in a process with threads.
-[[noreturn]] void becomeProgram(char** arguments, char** environment, const char* folder, int out, int err) {
+[[noreturn]] void becomeProgram(char** arguments, char** environment, const char* folder, int out,
+                                int err) {
     if (*folder && ::chdir(folder) != 0) ::_exit(126);
     const int nothing = ::open("/dev/null", O_RDONLY);
     ::dup2(nothing, STDIN_FILENO);
@@ -43,7 +44,8 @@ bool drain(int fd, std::string& text) {
 }
 
 /// Collects both streams until they end; signals the process when its time comes.
-void attend(pid_t process, int out, int err, const ProcessOptions& options, Clock::time_point start, ProcessResult& result) {
+void attend(pid_t process, int out, int err, const ProcessOptions& options, Clock::time_point start,
+            ProcessResult& result) {
     pollfd streams[2] = {{out, POLLIN, 0}, {err, POLLIN, 0}};
     bool interruptSent = options.interruptAfterSeconds <= 0;
     while (streams[0].fd >= 0 || streams[1].fd >= 0) {
@@ -73,18 +75,23 @@ ProcessResult run(const std::vector<std::string>& arguments, const ProcessOption
         return result;
     }
     const std::vector<char*> argv = pointers(arguments);
-    const std::vector<std::string> environment = options.environment.value_or(std::vector<std::string>()); // the pointers are into it
+    const std::vector<std::string> environment =
+        options.environment.value_or(std::vector<std::string>()); // the pointers are into it
     const std::vector<char*> envp = pointers(environment);
     const std::string folder = options.folder.string();
     const Clock::time_point start = Clock::now();
     const pid_t process = ::fork();
-    if (process == 0) becomeProgram(const_cast<char**>(argv.data()), options.environment ? const_cast<char**>(envp.data()) : environ, folder.c_str(), out[1], err[1]);
+    if (process == 0)
+        becomeProgram(const_cast<char**>(argv.data()),
+                      options.environment ? const_cast<char**>(envp.data()) : environ,
+                      folder.c_str(), out[1], err[1]);
     ::close(out[1]);
     ::close(err[1]);
     int status = 0;
     if (process > 0) {
         attend(process, out[0], err[0], options, start, result);
-        while (::waitpid(process, &status, 0) < 0 && errno == EINTR) {}
+        while (::waitpid(process, &status, 0) < 0 && errno == EINTR) {
+        }
         if (WIFEXITED(status)) result.status = WEXITSTATUS(status);
         if (WIFSIGNALED(status)) result.signal = WTERMSIG(status);
     }
@@ -100,10 +107,15 @@ ProcessResult tyndall(std::vector<std::string> arguments, const ProcessOptions& 
 }
 
 bool endedByItself(const ProcessResult& result, std::string& why) {
-    if (result.timedOut) why = "it hung";
-    else if (result.signal) why = std::string("signal ") + strsignal(result.signal);
-    else if (result.err.find("Sanitizer") != std::string::npos || result.err.find("runtime error:") != std::string::npos) why = "a sanitizer's report: " + result.err;
-    else return true;
+    if (result.timedOut)
+        why = "it hung";
+    else if (result.signal)
+        why = std::string("signal ") + strsignal(result.signal);
+    else if (result.err.find("Sanitizer") != std::string::npos ||
+             result.err.find("runtime error:") != std::string::npos)
+        why = "a sanitizer's report: " + result.err;
+    else
+        return true;
     return false;
 }
 

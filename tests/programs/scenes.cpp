@@ -15,7 +15,8 @@ constexpr const char* kHead = R"({
 constexpr const char* kFog =
     R"(    {"name": "haze", "medium": {"type": "homogeneous", "shape": "height", "scaleHeight": 2, "scattering": [0.1, 0.1, 0.1], "absorption": [0.01, 0.01, 0.01]}},
 )";
-constexpr const char* kTail = R"(    {"name": "eye", "camera": {"type": "perspective", "yfov": 0.8, "znear": 0.05}, "translation": [0, 1, 5]}
+constexpr const char* kTail =
+    R"(    {"name": "eye", "camera": {"type": "perspective", "yfov": 0.8, "znear": 0.05}, "translation": [0, 1, 5]}
   ],
   "camera": "eye"
 }
@@ -28,7 +29,11 @@ std::filesystem::path write(const std::filesystem::path& path, const std::string
 
 } // namespace
 
-std::filesystem::path writeFoggyScene(const std::filesystem::path& folder) { return write(folder / "foggy.scene.json", std::string(kHead) + kFog + kTail); }
-std::filesystem::path writeClearScene(const std::filesystem::path& folder) { return write(folder / "clear.scene.json", std::string(kHead) + kTail); }
+std::filesystem::path writeFoggyScene(const std::filesystem::path& folder) {
+    return write(folder / "foggy.scene.json", std::string(kHead) + kFog + kTail);
+}
+std::filesystem::path writeClearScene(const std::filesystem::path& folder) {
+    return write(folder / "clear.scene.json", std::string(kHead) + kTail);
+}
 
 } // namespace tyndall::test

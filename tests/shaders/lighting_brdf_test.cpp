@@ -32,7 +32,8 @@ Parts appendixB(const Surface& s, const dvec3& view, const dvec3& light) {
     const double schlick = std::pow(1 - std::abs(glm::dot(view, half)), 5);
     const double coat = s.specular * (0.04 + 0.96 * schlick);
     const dvec3 metal = s.base + (1.0 - s.base) * schlick;
-    return {(1 - s.metallic) * (1 - coat) * s.base / kPi, visibility * d * ((1 - s.metallic) * dvec3(coat) + s.metallic * metal)};
+    return {(1 - s.metallic) * (1 - coat) * s.base / kPi,
+            visibility * d * ((1 - s.metallic) * dvec3(coat) + s.metallic * metal)};
 }
 
 /// ∫ BRDF·cosine over the hemisphere for a view in the xz plane, in double, by the half vector (dω_l = 4 (v·h) dω_h), whose polar
@@ -49,13 +50,15 @@ double albedoInDouble(const Surface& s, double cosView) {
         const double stretch = a / (std::cos(t) * std::cos(t) + a * a * std::sin(t) * std::sin(t));
         for (int j = 0; j < kAzimuth; ++j) {
             const double azimuth = (j + 0.5) / kAzimuth * kPi; // the other half is its mirror image
-            const dvec3 half(std::sin(polar) * std::cos(azimuth), std::sin(polar) * std::sin(azimuth), std::cos(polar));
+            const dvec3 half(std::sin(polar) * std::cos(azimuth),
+                             std::sin(polar) * std::sin(azimuth), std::cos(polar));
             const double viewHalf = glm::dot(view, half);
             if (viewHalf <= 0) continue;
             const dvec3 light = 2 * viewHalf * half - view;
             if (light.z <= 0) continue;
             const Parts parts = appendixB(s, view, light);
-            sum += (parts.diffuse.x + parts.specular.x) * light.z * 4 * viewHalf * std::sin(polar) * stretch;
+            sum += (parts.diffuse.x + parts.specular.x) * light.z * 4 * viewHalf * std::sin(polar) *
+                   stretch;
         }
     }
     return sum * (0.5 * kPi / kPolar) * (kPi / kAzimuth) * 2;
@@ -82,9 +85,12 @@ TEST_P(BrdfShader, EqualsAppendixBInDouble) {
         const dvec3 view = randomDirection(random, 0.02);
         dvec3 light = randomDirection(random, -0.2);
         // Half of them near the mirror direction, where smooth surfaces shine.
-        if (i % 2) light = glm::normalize(dvec3(-view.x, -view.y, view.z) + 0.2 * randomDirection(random, -1));
+        if (i % 2)
+            light =
+                glm::normalize(dvec3(-view.x, -view.y, view.z) + 0.2 * randomDirection(random, -1));
         // The inputs of both sides are the same floats.
-        const vec4 v(vec3(view), float(s.metallic)), l(vec3(light), float(s.roughness)), b(vec3(s.base), float(s.specular));
+        const vec4 v(vec3(view), float(s.metallic)), l(vec3(light), float(s.roughness)),
+            b(vec3(s.base), float(s.specular));
         inputs.insert(inputs.end(), {v, l, b});
         s.base = dvec3(vec3(b));
         s.metallic = double(v.w);
@@ -93,17 +99,23 @@ TEST_P(BrdfShader, EqualsAppendixBInDouble) {
         surfaces.push_back(s);
         directions.emplace_back(glm::normalize(dvec3(vec3(v))), glm::normalize(dvec3(vec3(l))));
     }
-    const std::vector<vec4> outputs = runOnGpu({"lighting/brdf.glsl"}, R"(
+    const std::vector<vec4> outputs =
+        runOnGpu({"lighting/brdf.glsl"}, R"(
         vec4 v = inputs[3u * id], l = inputs[3u * id + 1u], b = inputs[3u * id + 2u];
         BrdfValue value = evaluateBrdf(makeBrdf(b.rgb, v.w, l.w, b.w), vec3(0, 0, 1), v.xyz, l.xyz);
         outputs[2u * id] = vec4(value.diffuse, 0);
-        outputs[2u * id + 1u] = vec4(value.specular, 0);)", inputs, surfaces.size() * 2, uint32_t(surfaces.size()));
+        outputs[2u * id + 1u] = vec4(value.specular, 0);)",
+                 inputs, surfaces.size() * 2, uint32_t(surfaces.size()));
     int lit = 0;
     for (size_t i = 0; i < surfaces.size(); ++i) {
         const Parts expected = appendixB(surfaces[i], directions[i].first, directions[i].second);
         for (int c = 0; c < 3; ++c) {
-            ASSERT_NEAR(double(outputs[2 * i][c]), expected.diffuse[c], 1e-5 * expected.diffuse[c] + 1e-7) << "entry " << i << ", seed " << seed();
-            ASSERT_NEAR(double(outputs[2 * i + 1][c]), expected.specular[c], 2e-4 * expected.specular[c] + 1e-7) << "entry " << i << ", seed " << seed();
+            ASSERT_NEAR(double(outputs[2 * i][c]), expected.diffuse[c],
+                        1e-5 * expected.diffuse[c] + 1e-7)
+                << "entry " << i << ", seed " << seed();
+            ASSERT_NEAR(double(outputs[2 * i + 1][c]), expected.specular[c],
+                        2e-4 * expected.specular[c] + 1e-7)
+                << "entry " << i << ", seed " << seed();
         }
         lit += expected.diffuse.x + expected.specular.x > 0;
     }
@@ -111,10 +123,12 @@ TEST_P(BrdfShader, EqualsAppendixBInDouble) {
 }
 
 TEST_P(BrdfShader, DielectricWithoutSpecularIsExactlyLambert) {
-    const std::vector<vec4> inputs = {vec4(glm::normalize(vec3(0.3f, -0.2f, 0.7f)), 0), vec4(glm::normalize(vec3(-0.6f, 0.4f, 0.1f)), 0)};
+    const std::vector<vec4> inputs = {vec4(glm::normalize(vec3(0.3f, -0.2f, 0.7f)), 0),
+                                      vec4(glm::normalize(vec3(-0.6f, 0.4f, 0.1f)), 0)};
     const std::vector<vec4> outputs = runOnGpu({"lighting/brdf.glsl"}, R"(
         BrdfValue value = evaluateBrdf(makeBrdf(vec3(0.25, 0.5, 1.0), 0.0, 0.1, 0.0), vec3(0, 0, 1), inputs[0].xyz, inputs[1].xyz);
-        outputs[0] = vec4(value.diffuse + value.specular, 0);)", inputs, 1, 1);
+        outputs[0] = vec4(value.diffuse + value.specular, 0);)",
+                                               inputs, 1, 1);
     EXPECT_FLOAT_EQ(outputs[0].x, float(0.25 / kPi));
     EXPECT_FLOAT_EQ(outputs[0].y, float(0.5 / kPi));
     EXPECT_FLOAT_EQ(outputs[0].z, float(1.0 / kPi));
@@ -152,15 +166,18 @@ TEST_P(BrdfShader, WhiteFurnaceNeverGainsEnergyFromMicrofacets) {
             inputs.emplace_back(roughness, 1.0f, 1.0f, cosine);
             surfaces.push_back({dvec3(1), 1, double(roughness), 1});
         }
-    const std::vector<vec4> outputs = runOnGpu({"lighting/brdf.glsl"}, kFurnace, inputs, inputs.size(), uint32_t(inputs.size()));
+    const std::vector<vec4> outputs =
+        runOnGpu({"lighting/brdf.glsl"}, kFurnace, inputs, inputs.size(), uint32_t(inputs.size()));
     for (size_t i = 0; i < inputs.size(); ++i) {
-        SCOPED_TRACE(::testing::Message() << "roughness " << inputs[i].x << ", cosine " << inputs[i].w);
+        SCOPED_TRACE(::testing::Message()
+                     << "roughness " << inputs[i].x << ", cosine " << inputs[i].w);
         EXPECT_LE(outputs[i].x, 1.0f + 1e-4f);
         EXPECT_EQ(outputs[i].y, 0.0f); // a metal has no base that scatters
         // What the renderer uses as the weight of a drawn direction is the quotient that it claims to be.
         EXPECT_NEAR(outputs[i].z, outputs[i].x, 2e-3f);
         if (inputs[i].x >= 0.1f) {
-            EXPECT_NEAR(double(outputs[i].x), albedoInDouble(surfaces[i], double(inputs[i].w)), 4e-3);
+            EXPECT_NEAR(double(outputs[i].x), albedoInDouble(surfaces[i], double(inputs[i].w)),
+                        4e-3);
         } else {
             EXPECT_GT(outputs[i].x, 0.98f); // nearly a mirror
         }
@@ -170,12 +187,16 @@ TEST_P(BrdfShader, WhiteFurnaceNeverGainsEnergyFromMicrofacets) {
 TEST_P(BrdfShader, DielectricFurnaceIsWhatAppendixBGives) {
     std::vector<vec4> inputs;
     for (const float roughness : {0.2f, 0.5f, 1.0f})
-        for (const float cosine : {0.1f, 0.3f, 0.6f, 0.95f}) inputs.emplace_back(roughness, 0.0f, 1.0f, cosine);
-    const std::vector<vec4> outputs = runOnGpu({"lighting/brdf.glsl"}, kFurnace, inputs, inputs.size(), uint32_t(inputs.size()));
+        for (const float cosine : {0.1f, 0.3f, 0.6f, 0.95f})
+            inputs.emplace_back(roughness, 0.0f, 1.0f, cosine);
+    const std::vector<vec4> outputs =
+        runOnGpu({"lighting/brdf.glsl"}, kFurnace, inputs, inputs.size(), uint32_t(inputs.size()));
     for (size_t i = 0; i < inputs.size(); ++i) {
-        SCOPED_TRACE(::testing::Message() << "roughness " << inputs[i].x << ", cosine " << inputs[i].w);
+        SCOPED_TRACE(::testing::Message()
+                     << "roughness " << inputs[i].x << ", cosine " << inputs[i].w);
         const Surface surface{dvec3(1), 0, double(inputs[i].x), 1};
-        EXPECT_NEAR(double(outputs[i].x + outputs[i].y), albedoInDouble(surface, double(inputs[i].w)), 5e-3);
+        EXPECT_NEAR(double(outputs[i].x + outputs[i].y),
+                    albedoInDouble(surface, double(inputs[i].w)), 5e-3);
         // The appendix weighs the base by 1-F of the half vector, which at grazing views is not what the coat takes: the sum
         // exceeds 1 there, for every renderer that follows the appendix. Seen from above, it does not.
         if (inputs[i].w > 0.8f) {
@@ -193,7 +214,8 @@ TEST_P(BrdfShader, SmoothestSurfacesStayFinite) {
         BrdfValue a = evaluateBrdf(brdf, vec3(0, 0, 1), toEye, mirrored);
         BrdfValue b = evaluateBrdf(brdf, vec3(0, 0, 1), toEye, -toEye);
         BrdfValue c = evaluateBrdf(brdf, vec3(0, 0, 1), -toEye, mirrored);
-        outputs[id] = vec4(a.specular.r, b.specular.r, c.specular.r, a.diffuse.r);)", {}, 256, 256);
+        outputs[id] = vec4(a.specular.r, b.specular.r, c.specular.r, a.diffuse.r);)",
+                                               {}, 256, 256);
     for (const vec4& value : outputs)
         for (int c = 0; c < 4; ++c) {
             EXPECT_TRUE(std::isfinite(value[c]));

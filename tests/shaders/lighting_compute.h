@@ -20,7 +20,8 @@ struct BlockBytes {
 
 /// Runs `body` once for each of `count` invocations. It sees `uint id`, `vec4 inputs[]` and `vec4 outputs[]`, and what `includes`
 /// (paths below shaders/) define. Returns the outputs. Throws with the driver's message where it does not compile.
-std::vector<vec4> runOnGpu(const std::vector<std::string>& includes, std::string_view body, std::span<const vec4> inputs, size_t outputs,
-                           uint32_t count, const std::vector<BlockBytes>& blocks = {});
+std::vector<vec4> runOnGpu(const std::vector<std::string>& includes, std::string_view body,
+                           std::span<const vec4> inputs, size_t outputs, uint32_t count,
+                           const std::vector<BlockBytes>& blocks = {});
 
 } // namespace tyndall::test

@@ -39,7 +39,8 @@ TEST(AlphaCutoffs, KeepTheAreaOfThinLeavesInEveryLevel) {
     image.width = image.height = 64;
     image.rgba.assign(64 * 64 * 4, 255);
     for (int y = 0; y < 64; ++y)
-        for (int x = 0; x < 64; ++x) image.rgba[size_t(4 * (y * 64 + x) + 3)] = uint8_t(x % 8 < 2 ? 255 : 0);
+        for (int x = 0; x < 64; ++x)
+            image.rgba[size_t(4 * (y * 64 + x) + 3)] = uint8_t(x % 8 < 2 ? 255 : 0);
     const std::array<float, 16> cutoffs = alphaCutoffs(image, 0.5f);
     EXPECT_FLOAT_EQ(cutoffs[0], 0.5f);
     // Level 1 has one full column in four, level 2 one half-covered column in two, and the levels after it are even.
@@ -47,7 +48,8 @@ TEST(AlphaCutoffs, KeepTheAreaOfThinLeavesInEveryLevel) {
     EXPECT_LT(cutoffs[1], 1.0f);
     EXPECT_LE(cutoffs[2], 0.5f);
     EXPECT_LE(cutoffs[3], 0.25f);
-    for (int mip = 0; mip < 16; ++mip) EXPECT_TRUE(cutoffs[size_t(mip)] > 0 && cutoffs[size_t(mip)] <= 1) << "level " << mip;
+    for (int mip = 0; mip < 16; ++mip)
+        EXPECT_TRUE(cutoffs[size_t(mip)] > 0 && cutoffs[size_t(mip)] <= 1) << "level " << mip;
 }
 
 TEST(AlphaCutoffs, CoverageOfNoiseStaysWithinAPixelInTwoHundred) {
@@ -70,12 +72,15 @@ TEST(AlphaCutoffs, CoverageOfNoiseStaysWithinAPixelInTwoHundred) {
         size_t covered = 0;
         for (int y = 0; y < size; ++y)
             for (int x = 0; x < size; ++x) {
-                const auto at = [&](int i, int j) { return level[size_t(2 * y + j) * size_t(2 * size) + size_t(2 * x + i)]; };
+                const auto at = [&](int i, int j) {
+                    return level[size_t(2 * y + j) * size_t(2 * size) + size_t(2 * x + i)];
+                };
                 const double mean = (at(0, 0) + at(1, 0) + at(0, 1) + at(1, 1)) / 4;
                 next[size_t(y * size + x)] = mean;
                 covered += mean >= double(cutoffs[size_t(mip)]);
             }
-        EXPECT_NEAR(double(covered) / double(next.size()), coverage, 0.005) << "level " << mip << ", seed " << test::seed();
+        EXPECT_NEAR(double(covered) / double(next.size()), coverage, 0.005)
+            << "level " << mip << ", seed " << test::seed();
         level = next;
     }
 }
@@ -112,16 +117,19 @@ TEST(Culling, RunsJoinInstancesAndStopAtWhatIsCulled) {
     }
     const std::array<vec4, 1> planes = {vec4(1, 0, 0, 0)};
     std::vector<std::pair<uint32_t, uint32_t>> runs;
-    forEachVisibleRun(std::span<const DrawItem>(items), planes, [&](const DrawRun& run) { runs.emplace_back(run.first->object, run.count); });
+    forEachVisibleRun(std::span<const DrawItem>(items), planes,
+                      [&](const DrawRun& run) { runs.emplace_back(run.first->object, run.count); });
     EXPECT_EQ(runs, (std::vector<std::pair<uint32_t, uint32_t>>{{0, 1}, {2, 2}, {4, 1}}));
 }
 
 TEST(BlendOrder, IsFarToNearAndStable) {
-    std::vector<BlendPrimitive> primitives = {{1, 0, 0}, {5, 1, 3}, {5, 1, 0}, {5, 0, 9}, {2, 0, 0}};
+    std::vector<BlendPrimitive> primitives = {
+        {1, 0, 0}, {5, 1, 3}, {5, 1, 0}, {5, 0, 9}, {2, 0, 0}};
     sortBackToFront(primitives);
     std::vector<std::pair<float, uint32_t>> order;
     for (const BlendPrimitive& p : primitives) order.emplace_back(p.depth, p.item * 100 + p.first);
-    EXPECT_EQ(order, (std::vector<std::pair<float, uint32_t>>{{5, 9}, {5, 100}, {5, 103}, {2, 0}, {1, 0}}));
+    EXPECT_EQ(order, (std::vector<std::pair<float, uint32_t>>{
+                         {5, 9}, {5, 100}, {5, 103}, {2, 0}, {1, 0}}));
 }
 
 Environment environmentFrom(int width, int height, uint32_t seed) {
@@ -149,7 +157,9 @@ TEST(EnvironmentLevels, AllHoldTheSameLight) {
     ASSERT_EQ(made.levels.size(), 7u); // 64×32 … 1×1
     EXPECT_FALSE(made.black);
     const double expected = fluence(made.levels.front());
-    for (const Image& level : made.levels) EXPECT_NEAR(fluence(level), expected, 1e-5 * expected) << level.width << "x" << level.height;
+    for (const Image& level : made.levels)
+        EXPECT_NEAR(fluence(level), expected, 1e-5 * expected)
+            << level.width << "x" << level.height;
 }
 
 TEST(EnvironmentLevels, AConstantEnvironmentIsOneTexel) {

@@ -14,18 +14,20 @@ namespace {
 std::string sourceOf(const std::vector<std::string>& includes, std::string_view body) {
     std::string text;
     for (const std::string& include : includes) text += "#include \"" + include + "\"\n";
-    text += "layout(local_size_x = 32) in;\n"
-            "layout(std430) readonly buffer Inputs { vec4 inputs[]; };\n"
-            "layout(std430) writeonly buffer Outputs { vec4 outputs[]; };\n"
-            "uniform uint invocationCount;\n"
-            "void main() {\n    uint id = gl_GlobalInvocationID.x;\n    if (id >= invocationCount) return;\n";
+    text +=
+        "layout(local_size_x = 32) in;\n"
+        "layout(std430) readonly buffer Inputs { vec4 inputs[]; };\n"
+        "layout(std430) writeonly buffer Outputs { vec4 outputs[]; };\n"
+        "uniform uint invocationCount;\n"
+        "void main() {\n    uint id = gl_GlobalInvocationID.x;\n    if (id >= invocationCount) return;\n";
     text += body;
     return text + "\n}\n";
 }
 
 void bindStorage(const gl::Program& program, const char* name, const gl::Buffer& buffer) {
     const gl::ProgramResource* block = program.find(name);
-    if (block && buffer) glBindBufferBase(GL_SHADER_STORAGE_BUFFER, GLuint(block->binding), buffer.id());
+    if (block && buffer)
+        glBindBufferBase(GL_SHADER_STORAGE_BUFFER, GLuint(block->binding), buffer.id());
 }
 
 void bindTexture(const gl::Program& program, const char* name, const gl::Texture& texture) {
@@ -33,12 +35,12 @@ void bindTexture(const gl::Program& program, const char* name, const gl::Texture
     if (!sampler || !texture) return;
     glTextureParameteri(texture.id(), GL_TEXTURE_MIN_FILTER, GL_LINEAR);
     glTextureParameteri(texture.id(), GL_TEXTURE_MAG_FILTER, GL_LINEAR);
-    for (const GLenum wrap : {GL_TEXTURE_WRAP_S, GL_TEXTURE_WRAP_T, GL_TEXTURE_WRAP_R}) glTextureParameteri(texture.id(), wrap, GL_CLAMP_TO_EDGE);
+    for (const GLenum wrap : {GL_TEXTURE_WRAP_S, GL_TEXTURE_WRAP_T, GL_TEXTURE_WRAP_R})
+        glTextureParameteri(texture.id(), wrap, GL_CLAMP_TO_EDGE);
     glBindTextureUnit(GLuint(sampler->binding), texture.id());
 }
 
-template <typename T>
-gl::Buffer bufferOf(const char* name, const std::vector<T>& values) {
+template <typename T> gl::Buffer bufferOf(const char* name, const std::vector<T>& values) {
     if (values.empty()) {
         gl::Buffer zeros(name, 1024);
         zeros.clear();
@@ -67,20 +69,27 @@ MediaCompute::MediaCompute(const Scene& scene, const MediaOptions& options) {
     gpu::MediaHeader header{};
     header.phaseGroupCount = assignPhaseGroups(placed_, header, notes);
     header.mediumCount = uint32_t(placed_.size());
-    for (const PlacedMedium& medium : placed_) header.gridCount += medium.data.kind == gpu::kMediumGrid ? 1u : 0u;
+    for (const PlacedMedium& medium : placed_)
+        header.gridCount += medium.data.kind == gpu::kMediumGrid ? 1u : 0u;
     header.flags = options.flags;
     header.stepVoxels = options.stepVoxels;
     header.analyticSteps = options.steps;
     header.minTransmittance = options.minTransmittance;
+    header.environmentFirst = options.environmentFirst;
+    header.environmentLights = options.environmentLights;
+    header.environmentStride = options.environmentStride;
     uploadGrids();
     std::vector<std::byte> table(sizeof header + placed_.size() * sizeof(gpu::MediumData) + 16);
     std::memcpy(table.data(), &header, sizeof header);
     for (size_t i = 0; i < placed_.size(); ++i)
-        std::memcpy(table.data() + sizeof header + i * sizeof(gpu::MediumData), &placed_[i].data, sizeof(gpu::MediumData));
+        std::memcpy(table.data() + sizeof header + i * sizeof(gpu::MediumData), &placed_[i].data,
+                    sizeof(gpu::MediumData));
     media_ = bufferOf("media", table);
     const BlackbodyTable blackbody = makeBlackbodyTable();
-    std::vector<vec4> block{vec4(float(BlackbodyTable::kCoolest), float(BlackbodyTable::kHottest),
-                                 float(1.0 / (1.0 / BlackbodyTable::kCoolest - 1.0 / BlackbodyTable::kHottest)), float(blackbody.entries.size() - 1))};
+    std::vector<vec4> block{
+        vec4(float(BlackbodyTable::kCoolest), float(BlackbodyTable::kHottest),
+             float(1.0 / (1.0 / BlackbodyTable::kCoolest - 1.0 / BlackbodyTable::kHottest)),
+             float(blackbody.entries.size() - 1))};
     block.insert(block.end(), blackbody.entries.begin(), blackbody.entries.end());
     blackbody_ = bufferOf("blackbody", block);
     views_ = bufferOf("views", options.views);
@@ -100,22 +109,29 @@ void MediaCompute::uploadGrids() {
     std::vector<const float*> slots;
     const auto add = [&](const BrickGrid& grid) {
         const size_t first = slots.size(), firstBrick = table.size();
-        for (uint32_t i = 0; i < grid.slotCount(); ++i) slots.push_back(grid.samples.data() + size_t(i) * kBrickSampleCount);
+        for (uint32_t i = 0; i < grid.slotCount(); ++i)
+            slots.push_back(grid.samples.data() + size_t(i) * kBrickSampleCount);
         for (const Brick& brick : grid.bricks) {
             const size_t slot = first + brick.slot;
-            table.push_back({brick.minimum, brick.maximum, brick.slot == Brick::kNoSlot ? gpu::kNoSlot : uint32_t(slot % 100 | slot / 100 << 10), 0});
+            table.push_back({brick.minimum, brick.maximum,
+                             brick.slot == Brick::kNoSlot ? gpu::kNoSlot
+                                                          : uint32_t(slot % 100 | slot / 100 << 10),
+                             0});
         }
         return int(firstBrick);
     };
     for (PlacedMedium& medium : placed_) {
         if (medium.data.kind != gpu::kMediumGrid) continue;
         medium.data.gridBricks.w = add(*medium.medium->density);
-        if (medium.data.emission.w > 0) medium.data.temperatureBricks.w = add(*medium.medium->temperature);
+        if (medium.data.emission.w > 0)
+            medium.data.temperatureBricks.w = add(*medium.medium->temperature);
     }
-    const int columns = int(std::min<size_t>(std::max<size_t>(slots.size(), 1), 100)), rows = int(slots.size() / 100) + 1;
+    const int columns = int(std::min<size_t>(std::max<size_t>(slots.size(), 1), 100)),
+              rows = int(slots.size() / 100) + 1;
     atlas_ = gl::Texture("atlas", {GL_TEXTURE_3D, GL_R32F, 9 * columns, 9 * rows, 9, 1});
     for (size_t i = 0; i < slots.size(); ++i)
-        atlas_.write({0, int(9 * (i % 100)), int(9 * (i / 100)), 0, 9, 9, 9}, slots[i], kBrickSampleCount * sizeof(float));
+        atlas_.write({0, int(9 * (i % 100)), int(9 * (i / 100)), 0, 9, 9, 9}, slots[i],
+                     kBrickSampleCount * sizeof(float));
     bricks_ = bufferOf("bricks", table);
 }
 
@@ -127,17 +143,22 @@ void MediaCompute::bind(const gl::Program& program) {
     bindStorage(program, "Lights", lights_);
     bindTexture(program, "mediumAtlas", atlas_);
     bindTexture(program, "lightOpticalDepth", volume_);
-    if (const gl::ProgramResource* block = program.find("View")) glBindBufferBase(GL_UNIFORM_BUFFER, GLuint(block->binding), view_.id());
+    if (const gl::ProgramResource* block = program.find("View"))
+        glBindBufferBase(GL_UNIFORM_BUFFER, GLuint(block->binding), view_.id());
 }
 
-std::vector<vec4> MediaCompute::run(gl::ShaderLibrary& library, const std::vector<std::string>& includes, std::string_view body, std::span<const vec4> inputs, uint32_t count) {
-    const std::string source = sourceOf(includes, body), path = "test/" + std::to_string(std::hash<std::string>{}(source)) + ".comp";
+std::vector<vec4> MediaCompute::run(gl::ShaderLibrary& library,
+                                    const std::vector<std::string>& includes, std::string_view body,
+                                    std::span<const vec4> inputs, uint32_t count) {
+    const std::string source = sourceOf(includes, body),
+                      path = "test/" + std::to_string(std::hash<std::string>{}(source)) + ".comp";
     library.addSource(path, source);
     Result<const gl::Program*> found = library.compute(path);
     if (!found) throw std::runtime_error(found.message());
     const gl::Program& program = **found;
     const vec4 none(0);
-    const gl::Buffer input("inputs", inputs.empty() ? std::as_bytes(std::span(&none, 1)) : std::as_bytes(inputs));
+    const gl::Buffer input("inputs", inputs.empty() ? std::as_bytes(std::span(&none, 1))
+                                                    : std::as_bytes(inputs));
     gl::Buffer output("outputs", count * sizeof(vec4));
     output.clear();
     glUseProgram(program.id());

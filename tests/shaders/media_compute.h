@@ -28,6 +28,7 @@ struct MediaOptions {
     float minTransmittance = 0;
     uint32_t viewFlags = 0, frameIndex = 0, seed = 1;
     std::vector<gpu::LightData> lights;
+    uint32_t environmentFirst = 0, environmentLights = 0, environmentStride = 1; // of MediaHeader
     std::vector<gpu::OpticalDepthView> views;
 };
 
@@ -39,7 +40,8 @@ public:
     /// Runs `body` once for each of `count` invocations. It sees `uint id`, `vec4 inputs[]`, `vec4 outputs[]`, what `includes`
     /// (paths below shaders/) define, and the media. Throws with the driver's message where it does not compile. `library` keeps the
     /// program for the next run of the same lines.
-    std::vector<vec4> run(gl::ShaderLibrary& library, const std::vector<std::string>& includes, std::string_view body, std::span<const vec4> inputs, uint32_t count);
+    std::vector<vec4> run(gl::ShaderLibrary& library, const std::vector<std::string>& includes,
+                          std::string_view body, std::span<const vec4> inputs, uint32_t count);
 
     [[nodiscard]] std::span<const PlacedMedium> placed() const { return placed_; }
 

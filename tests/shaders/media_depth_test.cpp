@@ -17,7 +17,9 @@ TYNDALL_GL_TESTS(MediaDepth);
 
 struct RandomRays {
     explicit RandomRays(uint64_t s) : engine(s) {}
-    double uniform(double a, double b) { return std::uniform_real_distribution<double>(a, b)(engine); }
+    double uniform(double a, double b) {
+        return std::uniform_real_distribution<double>(a, b)(engine);
+    }
     dvec3 point(double r) { return {uniform(-r, r), uniform(-r, r), uniform(-r, r)}; }
     dvec3 direction() {
         const double z = uniform(-1, 1), a = uniform(0, 2 * kPi), s = std::sqrt(1 - z * z);
@@ -38,14 +40,17 @@ struct Rays {
     }
     [[nodiscard]] size_t count() const { return inputs.size() / 2; }
     [[nodiscard]] RaySegment segment(size_t i) const {
-        return {dvec3(inputs[2 * i]), glm::normalize(dvec3(inputs[2 * i + 1])), double(inputs[2 * i].w)};
+        return {dvec3(inputs[2 * i]), glm::normalize(dvec3(inputs[2 * i + 1])),
+                double(inputs[2 * i].w)};
     }
 };
 
 Rays randomRays(double spread, int count, uint64_t seed) {
     RandomRays random(seed);
     Rays rays;
-    for (int i = 0; i < count; ++i) rays.add(random.point(spread), random.direction(), i % 4 == 0 ? 1e30 : random.uniform(0, 3 * spread));
+    for (int i = 0; i < count; ++i)
+        rays.add(random.point(spread), random.direction(),
+                 i % 4 == 0 ? 1e30 : random.uniform(0, 3 * spread));
     // Along the axes, through the centre and along faces; of no length.
     for (int axis = 0; axis < 3; ++axis)
         for (const double sign : {-1.0, 1.0}) {
@@ -58,19 +63,24 @@ Rays randomRays(double spread, int count, uint64_t seed) {
     return rays;
 }
 
-void expectDepths(const Medium& medium, const dmat4& worldFromNode, const Rays& rays, double relative, double absolute, const MediaOptions& options = {}) {
+void expectDepths(const Medium& medium, const dmat4& worldFromNode, const Rays& rays,
+                  double relative, double absolute, const MediaOptions& options = {}) {
     const Scene scene = sceneOf(std::span(&medium, 1), std::span(&worldFromNode, 1));
     gl::ShaderLibrary library;
     MediaCompute compute(scene, options);
     ASSERT_EQ(compute.placed().size(), 1u);
-    const auto outputs = compute.run(library, {"media/optical_depth.glsl"}, kBody, rays.inputs, uint32_t(rays.count()));
+    const auto outputs = compute.run(library, {"media/optical_depth.glsl"}, kBody, rays.inputs,
+                                     uint32_t(rays.count()));
     for (size_t i = 0; i < rays.count(); ++i) {
         const dvec3 exact = opticalDepth(medium, worldFromNode, rays.segment(i));
         for (int c = 0; c < 3; ++c) {
             const double gpu = double(outputs[i][c]);
             ASSERT_TRUE(std::isfinite(gpu) && gpu >= 0) << "ray " << i << ": " << gpu;
-            if (exact[c] > 1e6) EXPECT_GT(gpu, 1e5) << "ray " << i; // as opaque as any
-            else EXPECT_NEAR(gpu, exact[c], absolute + relative * exact[c]) << "ray " << i << " channel " << c;
+            if (exact[c] > 1e6)
+                EXPECT_GT(gpu, 1e5) << "ray " << i; // as opaque as any
+            else
+                EXPECT_NEAR(gpu, exact[c], absolute + relative * exact[c])
+                    << "ray " << i << " channel " << c;
         }
     }
 }
@@ -91,7 +101,8 @@ dmat4 slanted() {
 }
 
 TEST_P(MediaDepth, EverywhereIsExact) {
-    expectDepths(homogeneous(MediumKind::Everywhere), slanted(), randomRays(3, 200, seed()), 1e-6, 0);
+    expectDepths(homogeneous(MediumKind::Everywhere), slanted(), randomRays(3, 200, seed()), 1e-6,
+                 0);
 }
 
 TEST_P(MediaDepth, BoxIsExact) {
@@ -123,7 +134,8 @@ TEST_P(MediaDepth, HeightFogIsExactAtEverySlope) {
             }
         // Rounding of y (some 1e-7 of a metre) in units of the scale height.
         expectDepths(medium, dmat4(1.0), rays, 1e-5 + 1e-6 / scaleHeight, 1e-6);
-        expectDepths(medium, glm::rotate(dmat4(1.0), 0.5, dvec3(0, 0, 1)), rays, 1e-5 + 1e-6 / scaleHeight, 1e-6);
+        expectDepths(medium, glm::rotate(dmat4(1.0), 0.5, dvec3(0, 0, 1)), rays,
+                     1e-5 + 1e-6 / scaleHeight, 1e-6);
     }
 }
 
@@ -132,7 +144,8 @@ TEST_P(MediaDepth, NoCoefficientNoDepthAndAnyDensityIsFinite) {
         Medium medium = homogeneous(MediumKind::Box);
         medium.scattering = vec3(sigma, 0, sigma);
         medium.absorption = vec3(0);
-        expectDepths(medium, dmat4(1.0), randomRays(1, 100, seed() + 5), 1e-5, 1e-5 * double(sigma));
+        expectDepths(medium, dmat4(1.0), randomRays(1, 100, seed() + 5), 1e-5,
+                     1e-5 * double(sigma));
     }
 }
 
@@ -142,11 +155,15 @@ BrickGrid randomGrid(uint64_t s, const ivec3& size, const dmat4& worldFromIndex)
     for (int z = 0; z < size.z; ++z)
         for (int y = 0; y < size.y; ++y)
             for (int x = 0; x < size.x; ++x) {
-                float& v = voxels[(size_t(z) * size_t(size.y) + size_t(y)) * size_t(size.x) + size_t(x)];
+                float& v =
+                    voxels[(size_t(z) * size_t(size.y) + size_t(y)) * size_t(size.x) + size_t(x)];
                 // Empty, constant and varied regions of several bricks each.
-                if (x < size.x / 3) v = 0;
-                else if (y < size.y / 3) v = 0.75f;
-                else v = float(random.uniform(0, 2));
+                if (x < size.x / 3)
+                    v = 0;
+                else if (y < size.y / 3)
+                    v = 0.75f;
+                else
+                    v = float(random.uniform(0, 2));
             }
     return makeBrickGrid(voxels, ivec3(-5, 3, 11), size, worldFromIndex);
 }
@@ -160,10 +177,13 @@ Medium gridMedium(const dmat4& worldFromIndex, uint64_t s) {
 TEST_P(MediaDepth, GridIsExactCellByCell) {
     // Straight, then rotated, sheared and not uniform.
     dmat4 worldFromIndex = glm::scale(dmat4(1.0), dvec3(0.05));
-    expectDepths(gridMedium(worldFromIndex, seed()), glm::translate(dmat4(1.0), dvec3(-1, -1, -1)), randomRays(2, 500, seed() + 6), 2e-5, 2e-5);
-    worldFromIndex = glm::rotate(glm::scale(dmat4(1.0), dvec3(0.05, 0.02, 0.09)), 0.4, glm::normalize(dvec3(1, -1, 2)));
+    expectDepths(gridMedium(worldFromIndex, seed()), glm::translate(dmat4(1.0), dvec3(-1, -1, -1)),
+                 randomRays(2, 500, seed() + 6), 2e-5, 2e-5);
+    worldFromIndex = glm::rotate(glm::scale(dmat4(1.0), dvec3(0.05, 0.02, 0.09)), 0.4,
+                                 glm::normalize(dvec3(1, -1, 2)));
     worldFromIndex[1] += 0.3 * worldFromIndex[0];
-    expectDepths(gridMedium(worldFromIndex, seed() + 1), slanted(), randomRays(2, 500, seed() + 7), 2e-5, 2e-5);
+    expectDepths(gridMedium(worldFromIndex, seed() + 1), slanted(), randomRays(2, 500, seed() + 7),
+                 2e-5, 2e-5);
 }
 
 TEST_P(MediaDepth, GridByStepsConvergesToTheExactDepth) {
@@ -172,7 +192,8 @@ TEST_P(MediaDepth, GridByStepsConvergesToTheExactDepth) {
     options.flags = 0;
     options.stepVoxels = 0.1f;
     // Random voxels are the hardest field there is; the mid-point rule leaves h²/24 of its curvature, and texture filtering 1/256 of its steps.
-    expectDepths(gridMedium(worldFromIndex, seed()), dmat4(1.0), randomRays(2, 300, seed() + 8), 5e-3, 5e-3, options);
+    expectDepths(gridMedium(worldFromIndex, seed()), dmat4(1.0), randomRays(2, 300, seed() + 8),
+                 5e-3, 5e-3, options);
 }
 
 TEST_P(MediaDepth, FarFromTheOriginNothingIsLost) {
@@ -186,26 +207,33 @@ TEST_P(MediaDepth, FarFromTheOriginNothingIsLost) {
     gl::ShaderLibrary library;
     MediaCompute compute(scene, options);
     const Rays rays = randomRays(2, 300, seed() + 9);
-    const auto outputs = compute.run(library, {"media/optical_depth.glsl"}, kBody, rays.inputs, uint32_t(rays.count()));
+    const auto outputs = compute.run(library, {"media/optical_depth.glsl"}, kBody, rays.inputs,
+                                     uint32_t(rays.count()));
     for (size_t i = 0; i < rays.count(); ++i) {
         const dvec3 exact = opticalDepth(medium, dmat4(1.0), rays.segment(i));
-        for (int c = 0; c < 3; ++c) EXPECT_NEAR(double(outputs[i][c]), exact[c], 2e-5 + 2e-5 * exact[c]);
+        for (int c = 0; c < 3; ++c)
+            EXPECT_NEAR(double(outputs[i][c]), exact[c], 2e-5 + 2e-5 * exact[c]);
     }
 }
 
 TEST_P(MediaDepth, OverlappingMediaAddUp) {
-    std::vector<Medium> media{homogeneous(MediumKind::Box), homogeneous(MediumKind::Sphere), gridMedium(glm::scale(dmat4(1.0), dvec3(0.05)), seed()), homogeneous(MediumKind::Height)};
+    std::vector<Medium> media{homogeneous(MediumKind::Box), homogeneous(MediumKind::Sphere),
+                              gridMedium(glm::scale(dmat4(1.0), dvec3(0.05)), seed()),
+                              homogeneous(MediumKind::Height)};
     const std::vector<dmat4> world{dmat4(1.0), slanted(), dmat4(1.0), dmat4(1.0)};
     const Scene scene = sceneOf(media, world);
     gl::ShaderLibrary library;
     MediaCompute compute(scene, {});
     const Rays rays = randomRays(2, 300, seed() + 10);
-    const auto outputs = compute.run(library, {"media/optical_depth.glsl"}, kBody, rays.inputs, uint32_t(rays.count()));
+    const auto outputs = compute.run(library, {"media/optical_depth.glsl"}, kBody, rays.inputs,
+                                     uint32_t(rays.count()));
     for (size_t i = 0; i < rays.count(); ++i) {
         dvec3 exact(0);
-        for (size_t m = 0; m < media.size(); ++m) exact += opticalDepth(media[m], world[m], rays.segment(i));
+        for (size_t m = 0; m < media.size(); ++m)
+            exact += opticalDepth(media[m], world[m], rays.segment(i));
         if (exact.x > 1e6) continue;
-        for (int c = 0; c < 3; ++c) EXPECT_NEAR(double(outputs[i][c]), exact[c], 1e-4 + 1e-4 * exact[c]);
+        for (int c = 0; c < 3; ++c)
+            EXPECT_NEAR(double(outputs[i][c]), exact[c], 1e-4 + 1e-4 * exact[c]);
     }
 }
 

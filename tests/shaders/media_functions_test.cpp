@@ -11,7 +11,8 @@ namespace {
 using MediaFunctions = GlTest;
 TYNDALL_GL_TESTS(MediaFunctions);
 
-std::vector<vec4> runOnly(const std::vector<std::string>& includes, std::string_view body, const std::vector<vec4>& inputs) {
+std::vector<vec4> runOnly(const std::vector<std::string>& includes, std::string_view body,
+                          const std::vector<vec4>& inputs) {
     gl::ShaderLibrary library;
     const Scene scene;
     MediaCompute compute(scene, {});
@@ -21,7 +22,10 @@ std::vector<vec4> runOnly(const std::vector<std::string>& includes, std::string_
 TEST_P(MediaFunctions, OneMinusExpOverXIsAccurateFromZeroToOpaque) {
     std::vector<vec4> inputs{vec4(0)};
     for (double x = 1e-12; x < 1e30; x *= 1.07) inputs.emplace_back(float(x));
-    const auto outputs = runOnly({"common/math.glsl"}, "outputs[id] = vec4(oneMinusExpOverX(inputs[id].x), oneMinusExp(inputs[id].x), 0, 0);", inputs);
+    const auto outputs = runOnly(
+        {"common/math.glsl"},
+        "outputs[id] = vec4(oneMinusExpOverX(inputs[id].x), oneMinusExp(inputs[id].x), 0, 0);",
+        inputs);
     EXPECT_EQ(outputs[0].x, 1.0f);
     EXPECT_EQ(outputs[0].y, 0.0f);
     for (size_t i = 1; i < inputs.size(); ++i) {
@@ -35,7 +39,8 @@ TEST_P(MediaFunctions, MinusLogOneMinusOverZHasNoCancellation) {
     std::vector<vec4> inputs{vec4(0)};
     for (double z = 1e-9; z < 0.99999; z *= 1.05) inputs.emplace_back(float(z));
     for (double z = 1e-9; z < 1e20; z *= 1.2) inputs.emplace_back(float(-z));
-    const auto outputs = runOnly({"common/math.glsl"}, "outputs[id] = vec4(minusLogOneMinusOverZ(inputs[id].x));", inputs);
+    const auto outputs = runOnly(
+        {"common/math.glsl"}, "outputs[id] = vec4(minusLogOneMinusOverZ(inputs[id].x));", inputs);
     EXPECT_EQ(outputs[0].x, 1.0f);
     for (size_t i = 1; i < inputs.size(); ++i) {
         const double z = double(inputs[i].x);
@@ -45,9 +50,12 @@ TEST_P(MediaFunctions, MinusLogOneMinusOverZHasNoCancellation) {
 
 TEST_P(MediaFunctions, TruncatedExponentialInvertsItsDistribution) {
     std::vector<vec4> inputs;
-    for (const float tau : {0.0f, 1e-7f, 1e-4f, 9e-4f, 1.1e-3f, 0.1f, 1.0f, 10.0f, 80.0f, 1e4f, 1e30f})
+    for (const float tau :
+         {0.0f, 1e-7f, 1e-4f, 9e-4f, 1.1e-3f, 0.1f, 1.0f, 10.0f, 80.0f, 1e4f, 1e30f})
         for (float u = 0; u < 1.0f; u += 0.03f) inputs.emplace_back(tau, u, 0, 0);
-    const auto outputs = runOnly({"common/math.glsl"}, "outputs[id] = vec4(truncatedExponential(inputs[id].x, inputs[id].y));", inputs);
+    const auto outputs =
+        runOnly({"common/math.glsl"},
+                "outputs[id] = vec4(truncatedExponential(inputs[id].x, inputs[id].y));", inputs);
     for (size_t i = 0; i < inputs.size(); ++i) {
         const double tau = double(inputs[i].x), u = double(inputs[i].y), x = double(outputs[i].x);
         ASSERT_GE(x, 0.0);
@@ -60,18 +68,25 @@ TEST_P(MediaFunctions, TruncatedExponentialInvertsItsDistribution) {
 
 TEST_P(MediaFunctions, PhaseFunctionsAgreeWithDoublePrecision) {
     std::vector<vec4> inputs;
-    for (const float g : {-0.999f, -0.9f, -0.5f, -1e-7f, 0.0f, 1e-7f, 0.3f, 0.5f, 0.9f, 0.99f, 0.999f})
+    for (const float g :
+         {-0.999f, -0.9f, -0.5f, -1e-7f, 0.0f, 1e-7f, 0.3f, 0.5f, 0.9f, 0.99f, 0.999f})
         for (int i = 0; i <= 200; ++i) inputs.emplace_back(g, -1.0f + 0.01f * float(i), 0, 0);
-    const auto outputs = runOnly({"common/phase_function.glsl"},
-                                 "outputs[id] = vec4(phaseFunction(0u, inputs[id].x, inputs[id].y), phaseFunction(1u, inputs[id].x, inputs[id].y),"
-                                 " phaseFunction(2u, inputs[id].x, inputs[id].y), 0);", inputs);
+    const auto outputs = runOnly(
+        {"common/phase_function.glsl"},
+        "outputs[id] = vec4(phaseFunction(0u, inputs[id].x, inputs[id].y), phaseFunction(1u, inputs[id].x, inputs[id].y),"
+        " phaseFunction(2u, inputs[id].x, inputs[id].y), 0);",
+        inputs);
     for (size_t i = 0; i < inputs.size(); ++i) {
         const double g = double(inputs[i].x), c = double(inputs[i].y);
         // Near the peak 1 - cos carries single precision's rounding of the cosine itself.
-        const double tolerance = 2e-6 + 3e-7 / std::max(1e-3, (1 - std::abs(g)) * (1 - std::abs(g)) + 2 * std::abs(g) * (1 - (g < 0 ? -c : c)));
-        EXPECT_NEAR(double(outputs[i].x) / henyeyGreenstein(c, g), 1.0, tolerance) << "g " << g << " cos " << c;
+        const double tolerance =
+            2e-6 + 3e-7 / std::max(1e-3, (1 - std::abs(g)) * (1 - std::abs(g)) +
+                                             2 * std::abs(g) * (1 - (g < 0 ? -c : c)));
+        EXPECT_NEAR(double(outputs[i].x) / henyeyGreenstein(c, g), 1.0, tolerance)
+            << "g " << g << " cos " << c;
         EXPECT_NEAR(double(outputs[i].y) / rayleigh(c), 1.0, 2e-6);
-        EXPECT_NEAR(double(outputs[i].z) / cornetteShanks(c, g), 1.0, tolerance) << "g " << g << " cos " << c;
+        EXPECT_NEAR(double(outputs[i].z) / cornetteShanks(c, g), 1.0, tolerance)
+            << "g " << g << " cos " << c;
     }
 }
 
@@ -84,9 +99,11 @@ TEST_P(MediaFunctions, PhaseFunctionsIntegrateToOneOverTheSphere) {
             const double t = double(i) / (2 * kPanels), versine = 2 * t * t * t * t;
             inputs.emplace_back(g, float(g < 0 ? versine - 1 : 1 - versine), 0, 0);
         }
-        const auto outputs = runOnly({"common/phase_function.glsl"},
-                                     "outputs[id] = vec4(phaseFunction(0u, inputs[id].x, inputs[id].y), phaseFunction(1u, inputs[id].x, inputs[id].y),"
-                                     " phaseFunction(2u, inputs[id].x, inputs[id].y), 0);", inputs);
+        const auto outputs = runOnly(
+            {"common/phase_function.glsl"},
+            "outputs[id] = vec4(phaseFunction(0u, inputs[id].x, inputs[id].y), phaseFunction(1u, inputs[id].x, inputs[id].y),"
+            " phaseFunction(2u, inputs[id].x, inputs[id].y), 0);",
+            inputs);
         dvec3 sum(0);
         for (int i = 0; i <= 2 * kPanels; ++i) {
             const double t = double(i) / (2 * kPanels);
@@ -94,7 +111,8 @@ TEST_P(MediaFunctions, PhaseFunctionsIntegrateToOneOverTheSphere) {
             sum += dvec3(outputs[size_t(i)]) * weight * 8.0 * t * t * t;
         }
         const dvec3 integral = sum * (2 * kPi / (6.0 * kPanels));
-        for (int k = 0; k < 3; ++k) EXPECT_NEAR(integral[k], 1.0, 1e-3) << "g " << g << " kind " << k;
+        for (int k = 0; k < 3; ++k)
+            EXPECT_NEAR(integral[k], 1.0, 1e-3) << "g " << g << " kind " << k;
     }
 }
 

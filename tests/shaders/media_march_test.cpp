@@ -20,12 +20,14 @@ TYNDALL_GL_TESTS(MediaMarch);
 
 const std::vector<std::string> kIncludes{"media/march.glsl"};
 // Each invocation is a pixel of its own: its noise differs.
-const char* const kInScatter = "vec4 a = inputs[0]; vec4 b = inputs[1];"
-                               "MarchResult r = marchMedia(Ray(a.xyz, b.xyz), a.w, kMarchInScatter, uint(b.w), uvec2(id % 64u, id / 64u));"
-                               "outputs[id] = vec4(r.inScatter, r.opticalDepth.x);";
-const char* const kEmission = "vec4 a = inputs[0]; vec4 b = inputs[1];"
-                              "MarchResult r = marchMedia(Ray(a.xyz, b.xyz), a.w, kMarchEmission, 0u, uvec2(id % 64u, id / 64u));"
-                              "outputs[id] = vec4(r.emission, r.opticalDepth.x);";
+const char* const kInScatter =
+    "vec4 a = inputs[0]; vec4 b = inputs[1];"
+    "MarchResult r = marchMedia(Ray(a.xyz, b.xyz), a.w, kMarchInScatter, uint(b.w), uvec2(id % 64u, id / 64u));"
+    "outputs[id] = vec4(r.inScatter, r.opticalDepth.x);";
+const char* const kEmission =
+    "vec4 a = inputs[0]; vec4 b = inputs[1];"
+    "MarchResult r = marchMedia(Ray(a.xyz, b.xyz), a.w, kMarchEmission, 0u, uvec2(id % 64u, id / 64u));"
+    "outputs[id] = vec4(r.emission, r.opticalDepth.x);";
 
 gpu::LightData lamp(uint32_t type) {
     gpu::LightData light{};
@@ -43,7 +45,8 @@ gpu::LightData pointLamp(const dvec3& position) {
     return light;
 }
 
-std::vector<vec4> rayInputs(const dvec3& origin, const dvec3& direction, double length, size_t lights) {
+std::vector<vec4> rayInputs(const dvec3& origin, const dvec3& direction, double length,
+                            size_t lights) {
     return {vec4(vec3(origin), float(length)), vec4(vec3(direction), float(lights))};
 }
 
@@ -69,22 +72,56 @@ struct Airlight {
 TEST_P(MediaMarch, AirlightOfAPointLightIsWithinThreePerMille) {
     gl::ShaderLibrary library;
     // Sun et al. 2005, isotropic, albedo 1, 1 cd; values by quadrature of their closed form.
-    const Airlight table[] = {{.1, 10, 20, 30, 8.174737694e-4}, {.5, 4, 10, 45, 1.409133662e-3}, {1, 2, 5, 60, 3.484834779e-3},
-                              {.05, 20, 60, 90, 3.844005116e-5}, {2, 1, 3, 15, 0.1286970871}};
+    const Airlight table[] = {{.1, 10, 20, 30, 8.174737694e-4},
+                              {.5, 4, 10, 45, 1.409133662e-3},
+                              {1, 2, 5, 60, 3.484834779e-3},
+                              {.05, 20, 60, 90, 3.844005116e-5},
+                              {2, 1, 3, 15, 0.1286970871}};
     for (const Airlight& row : table) {
         const Medium medium = fog(MediumKind::Everywhere, vec3(float(row.beta)), vec3(0));
         const dmat4 world(1.0);
         const Scene scene = sceneOf(std::span(&medium, 1), std::span(&world, 1));
         const double angle = row.degrees * kPi / 180;
         MediaOptions options;
-        options.lights.push_back(pointLamp(row.sourceToViewer * dvec3(std::cos(angle), std::sin(angle), 0)));
+        options.lights.push_back(
+            pointLamp(row.sourceToViewer * dvec3(std::cos(angle), std::sin(angle), 0)));
         options.viewFlags = gpu::kViewConverge;
         MediaCompute compute(scene, options);
-        const auto outputs = compute.run(library, kIncludes, kInScatter, rayInputs(dvec3(0), dvec3(1, 0, 0), row.viewerToPoint, 1), 4096);
+        const auto outputs =
+            compute.run(library, kIncludes, kInScatter,
+                        rayInputs(dvec3(0), dvec3(1, 0, 0), row.viewerToPoint, 1), 4096);
         EXPECT_NEAR(meanOf(outputs).x / row.radiance, 1.0, 3e-3) << "beta " << row.beta;
         // And no single pixel is far off: the weights cancel what varies most.
         for (const vec4& v : outputs) EXPECT_NEAR(double(v.x) / row.radiance, 1.0, 0.15);
     }
+}
+
+TEST_P(MediaMarch, TheEnvironmentsLightsTakeTurnsAndLoseNothing) {
+    gl::ShaderLibrary library;
+    const Medium medium = fog(MediumKind::Everywhere, vec3(0.1f), vec3(0));
+    const dmat4 world(1.0);
+    const Scene scene = sceneOf(std::span(&medium, 1), std::span(&world, 1));
+    MediaOptions options;
+    for (const float lux : {5, 1, 2, 4}) {
+        options.lights.push_back(lamp(gpu::kLightDirectional));
+        options.lights.back().intensity = vec4(lux);
+    }
+    options.lights.push_back(pointLamp({5, 3, 0}));
+    const auto seen = [&] {
+        return MediaCompute(scene, options)
+            .run(library, kIncludes, kInScatter, rayInputs(dvec3(0), dvec3(1, 0, 0), 20, 5), 4096);
+    };
+    const std::vector<vec4> plain = seen();
+    options.environmentFirst = 1;
+    options.environmentLights = 3;
+    const std::vector<vec4> grouped = seen();
+    for (size_t i = 0; i < plain.size(); ++i) EXPECT_NEAR(grouped[i].x / plain[i].x, 1, 1e-5) << i;
+    // One of the three at each of 32 steps: turns of three that begin anywhere, so over the pixels each is seen as often.
+    options.environmentStride = 3;
+    EXPECT_NEAR(meanOf(seen()).x / meanOf(plain).x, 1, 1e-3);
+    options.environmentStride = 2;
+    EXPECT_NEAR(meanOf(seen()).x / meanOf(plain).x, 1, 1e-2)
+        << "two of three and one of three in turns";
 }
 
 TEST_P(MediaMarch, ConstantLightIsExactForAnyNumberOfSteps) {
@@ -92,7 +129,8 @@ TEST_P(MediaMarch, ConstantLightIsExactForAnyNumberOfSteps) {
     // A slab lit evenly along the ray: L = σs/σt · p · E · e^-σt · (1 - e^-2σt), any albedo per channel.
     for (const float sigma : {1e-6f, 1e-3f, 0.5f, 3.0f, 30.0f})
         for (const uint32_t steps : {1u, 2u, 3u, 7u, 32u, 200u, 1000u}) {
-            const vec3 scattering = sigma * vec3(1.0f, 0.5f, 0.1f), absorption = sigma * vec3(0.2f, 0.0f, 0.1f);
+            const vec3 scattering = sigma * vec3(1.0f, 0.5f, 0.1f),
+                       absorption = sigma * vec3(0.2f, 0.0f, 0.1f);
             Medium medium = fog(MediumKind::Box, scattering, absorption);
             medium.size = dvec3(2, 2, 2);
             const dmat4 world(1.0);
@@ -101,11 +139,15 @@ TEST_P(MediaMarch, ConstantLightIsExactForAnyNumberOfSteps) {
             options.steps = steps;
             options.lights.push_back(lamp(gpu::kLightDirectional));
             MediaCompute compute(scene, options);
-            const auto outputs = compute.run(library, kIncludes, kInScatter, rayInputs(dvec3(-5, 0, 0.2), dvec3(1, 0, 0), 1e30, 1), 64);
+            const auto outputs =
+                compute.run(library, kIncludes, kInScatter,
+                            rayInputs(dvec3(-5, 0, 0.2), dvec3(1, 0, 0), 1e30, 1), 64);
             for (int c = 0; c < 3; ++c) {
                 const double s = double(scattering[c]), t = s + double(absorption[c]);
                 const double exact = s / t * -std::expm1(-2 * t) * std::exp(-t) / (4 * kPi);
-                for (const vec4& v : outputs) EXPECT_NEAR(double(v[c]) / exact, 1.0, 2e-5) << "sigma " << sigma << " steps " << steps << " channel " << c;
+                for (const vec4& v : outputs)
+                    EXPECT_NEAR(double(v[c]) / exact, 1.0, 2e-5)
+                        << "sigma " << sigma << " steps " << steps << " channel " << c;
             }
         }
 }
@@ -123,15 +165,18 @@ TEST_P(MediaMarch, EmissionIsExactFromThinToOpaque) {
             options.steps = 5;
             MediaCompute compute(scene, options);
             // From inside: the camera's medium counts from the eye.
-            const auto outputs = compute.run(library, kIncludes, kEmission, rayInputs(dvec3(0), dvec3(0, 1, 0), 1.5, 0), 1);
+            const auto outputs = compute.run(library, kIncludes, kEmission,
+                                             rayInputs(dvec3(0), dvec3(0, 1, 0), 1.5, 0), 1);
             const double x = 1.5 * double(sigma), factor = x > 0 ? -std::expm1(-x) / x : 1.0;
-            EXPECT_NEAR(double(outputs[0].z) / (5 * 1.5 * factor), 1.0, 1e-5) << "kind " << int(kind) << " sigma " << sigma;
+            EXPECT_NEAR(double(outputs[0].z) / (5 * 1.5 * factor), 1.0, 1e-5)
+                << "kind " << int(kind) << " sigma " << sigma;
             EXPECT_NEAR(double(outputs[0].w), x, 1e-5 * x);
         }
 }
 
 /// Single scattering by quadrature: fine panels along the ray, each light exactly attenuated.
-dvec3 singleScattering(const Scene& scene, const RaySegment& ray, const gpu::LightData& light, int panels) {
+dvec3 singleScattering(const Scene& scene, const RaySegment& ray, const gpu::LightData& light,
+                       int panels) {
     const std::vector<dmat4> world = scene.worldTransforms();
     dvec3 sum(0), depth(0);
     const double h = ray.length / panels;
@@ -144,12 +189,15 @@ dvec3 singleScattering(const Scene& scene, const RaySegment& ray, const gpu::Lig
         dvec3 before(0), after(0), lightDepth(0), scattering(0);
         for (size_t m = 0; m < scene.media.size(); ++m) {
             const Medium& medium = scene.media[m];
-            before += opticalDepth(medium, world[m], {ray.origin + ray.direction * (i * h), ray.direction, 0.5 * h});
+            before += opticalDepth(medium, world[m],
+                                   {ray.origin + ray.direction * (i * h), ray.direction, 0.5 * h});
             after += opticalDepth(medium, world[m], {p, ray.direction, 0.5 * h});
             lightDepth += opticalDepth(medium, world[m], {p, glm::normalize(toLight), d});
             scattering += dvec3(medium.scattering) * mediumDensity(medium, world[m], p);
         }
-        for (int c = 0; c < 3; ++c) sum[c] += scattering[c] * std::exp(-depth[c] - before[c] - lightDepth[c]) * lux * h / (4 * kPi);
+        for (int c = 0; c < 3; ++c)
+            sum[c] += scattering[c] * std::exp(-depth[c] - before[c] - lightDepth[c]) * lux * h /
+                      (4 * kPi);
         depth += before + after;
     }
     return sum;
@@ -161,20 +209,27 @@ Medium cloud(uint64_t s) {
     std::uniform_real_distribution<float> value(0, 1.5f);
     std::vector<float> voxels(24 * 20 * 22);
     for (float& v : voxels) v = value(engine) > 0.3f ? value(engine) : 0.0f;
-    medium.density = std::make_shared<BrickGrid>(makeBrickGrid(voxels, ivec3(0), ivec3(24, 20, 22), glm::scale(dmat4(1.0), dvec3(0.1))));
+    medium.density = std::make_shared<BrickGrid>(
+        makeBrickGrid(voxels, ivec3(0), ivec3(24, 20, 22), glm::scale(dmat4(1.0), dvec3(0.1))));
     return medium;
 }
 
-void expectQuadrature(gl::ShaderLibrary& library, const std::vector<Medium>& media, const std::vector<dmat4>& world, const RaySegment& ray, const gpu::LightData& light, double tolerance, uint32_t flags = gpu::kMediaExact) {
+void expectQuadrature(gl::ShaderLibrary& library, const std::vector<Medium>& media,
+                      const std::vector<dmat4>& world, const RaySegment& ray,
+                      const gpu::LightData& light, double tolerance,
+                      uint32_t flags = gpu::kMediaExact) {
     const Scene scene = sceneOf(media, world);
     MediaOptions options;
     options.flags = flags;
     options.viewFlags = gpu::kViewConverge;
     options.lights.push_back(light);
     MediaCompute compute(scene, options);
-    const dvec3 mean = meanOf(compute.run(library, kIncludes, kInScatter, rayInputs(ray.origin, ray.direction, ray.length, 1), 4096));
+    const dvec3 mean = meanOf(compute.run(
+        library, kIncludes, kInScatter, rayInputs(ray.origin, ray.direction, ray.length, 1), 4096));
     const dvec3 exact = singleScattering(scene, ray, light, 4000);
-    for (int c = 0; c < 3; ++c) EXPECT_NEAR(mean[c] / exact[c], 1.0, tolerance) << "channel " << c << ": " << mean[c] << ", quadrature " << exact[c];
+    for (int c = 0; c < 3; ++c)
+        EXPECT_NEAR(mean[c] / exact[c], 1.0, tolerance)
+            << "channel " << c << ": " << mean[c] << ", quadrature " << exact[c];
 }
 
 TEST_P(MediaMarch, GridLitBySunAndLampMatchesQuadrature) {
@@ -197,7 +252,8 @@ TEST_P(MediaMarch, OverlappingMediaMatchQuadrature) {
     mist.scaleHeight = 0.4;
     const dmat4 placed = glm::translate(dmat4(1.0), dvec3(-1.2, -1, -1.1));
     const RaySegment ray{dvec3(-3, 0.13, 0.31), glm::normalize(dvec3(1, 0.05, -0.1)), 7};
-    expectQuadrature(library, {cloud(seed() + 1), ball, mist}, {placed, dmat4(1.0), dmat4(1.0)}, ray, pointLamp(dvec3(0.5, 1.5, -0.4)), 3e-3);
+    expectQuadrature(library, {cloud(seed() + 1), ball, mist}, {placed, dmat4(1.0), dmat4(1.0)},
+                     ray, pointLamp(dvec3(0.5, 1.5, -0.4)), 3e-3);
 }
 
 TEST_P(MediaMarch, HeightFogMatchesQuadrature) {
@@ -207,7 +263,8 @@ TEST_P(MediaMarch, HeightFogMatchesQuadrature) {
     gpu::LightData sun = lamp(gpu::kLightDirectional);
     sun.direction = vec4(glm::normalize(vec3(0.4f, -1, 0.1f)), 0);
     for (const double slope : {-0.3, 0.0, 0.2})
-        expectQuadrature(library, {mist}, {dmat4(1.0)}, {dvec3(0, 0.5, 0), glm::normalize(dvec3(1, slope, 0)), 6}, sun, 2e-3);
+        expectQuadrature(library, {mist}, {dmat4(1.0)},
+                         {dvec3(0, 0.5, 0), glm::normalize(dvec3(1, slope, 0)), 6}, sun, 2e-3);
 }
 
 TEST_P(MediaMarch, ConstantGridLooksLikeABox) {
@@ -215,7 +272,8 @@ TEST_P(MediaMarch, ConstantGridLooksLikeABox) {
     // 17³ voxels of 1: constant in the 16³ cells between them, and a fall to 0 over the cell outside.
     std::vector<float> voxels(17 * 17 * 17, 1.0f);
     Medium grid = fog(MediumKind::Grid, vec3(1, 0.5f, 2), vec3(0.3f));
-    grid.density = std::make_shared<BrickGrid>(makeBrickGrid(voxels, ivec3(0), ivec3(17), glm::scale(dmat4(1.0), dvec3(0.1))));
+    grid.density = std::make_shared<BrickGrid>(
+        makeBrickGrid(voxels, ivec3(0), ivec3(17), glm::scale(dmat4(1.0), dvec3(0.1))));
     const RaySegment ray{dvec3(-1, 0.81, 0.77), dvec3(1, 0, 0), 4};
     gpu::LightData sun = lamp(gpu::kLightDirectional);
     expectQuadrature(library, {grid}, {dmat4(1.0)}, ray, sun, 1e-3);
@@ -227,12 +285,14 @@ TEST_P(MediaMarch, HotGasGlowsAsABlackBody) {
     std::vector<float> ones(9 * 9 * 9, 1.0f), hot(9 * 9 * 9, 1500.0f);
     Medium gas = fog(MediumKind::Grid, vec3(0), vec3(2));
     gas.density = std::make_shared<BrickGrid>(makeBrickGrid(ones, ivec3(0), ivec3(9), dmat4(1.0)));
-    gas.temperature = std::make_shared<BrickGrid>(makeBrickGrid(hot, ivec3(0), ivec3(9), dmat4(1.0)));
+    gas.temperature =
+        std::make_shared<BrickGrid>(makeBrickGrid(hot, ivec3(0), ivec3(9), dmat4(1.0)));
     gas.temperatureScale = 3;
     const dmat4 world(1.0);
     const Scene scene = sceneOf(std::span(&gas, 1), std::span(&world, 1));
     MediaCompute compute(scene, {});
-    const auto outputs = compute.run(library, kIncludes, kEmission, rayInputs(dvec3(1, 4, 4), dvec3(1, 0, 0), 5, 0), 1);
+    const auto outputs = compute.run(library, kIncludes, kEmission,
+                                     rayInputs(dvec3(1, 4, 4), dvec3(1, 0, 0), 5, 0), 1);
     const dvec3 exact = 3.0 * blackbodyRadiance(1500) / 2.0 * -std::expm1(-10.0);
     for (int c = 0; c < 3; ++c) EXPECT_NEAR(double(outputs[0][c]), exact[c], 5e-3 * exact[0]);
 }
@@ -240,21 +300,29 @@ TEST_P(MediaMarch, HotGasGlowsAsABlackBody) {
 TEST_P(MediaMarch, NothingIsEverNegativeOrNotFinite) {
     gl::ShaderLibrary library;
     std::mt19937_64 engine(seed());
-    const auto uniform = [&](double a, double b) { return std::uniform_real_distribution<double>(a, b)(engine); };
+    const auto uniform = [&](double a, double b) {
+        return std::uniform_real_distribution<double>(a, b)(engine);
+    };
     for (const double scale : {1e-3, 1.0, 1e3}) {
-        std::vector<Medium> media{fog(MediumKind::Everywhere, vec3(1e-3f, 0, 1e-6f), vec3(0)), fog(MediumKind::Box, vec3(1e4f), vec3(0, 1, 1e-8f)),
-                                  fog(MediumKind::Sphere, vec3(0), vec3(0)), fog(MediumKind::Height, vec3(0.1f, 3, 1e5f), vec3(0)), cloud(seed() + 2)};
+        std::vector<Medium> media{fog(MediumKind::Everywhere, vec3(1e-3f, 0, 1e-6f), vec3(0)),
+                                  fog(MediumKind::Box, vec3(1e4f), vec3(0, 1, 1e-8f)),
+                                  fog(MediumKind::Sphere, vec3(0), vec3(0)),
+                                  fog(MediumKind::Height, vec3(0.1f, 3, 1e5f), vec3(0)),
+                                  cloud(seed() + 2)};
         media[2].emission = vec3(1);
         media[3].anisotropy = 0.99f;
         media[1].anisotropy = -0.99f;
         std::vector<dmat4> world;
-        for (size_t i = 0; i < media.size(); ++i) world.push_back(glm::scale(dmat4(1.0), dvec3(scale)));
+        for (size_t i = 0; i < media.size(); ++i)
+            world.push_back(glm::scale(dmat4(1.0), dvec3(scale)));
         for (const uint32_t flags : {0u, gpu::kMediaExact}) {
             const Scene scene = sceneOf(media, world);
             MediaOptions options;
             options.flags = flags;
             // On the ray, beside it, in the eye, far away; sun and panel.
-            for (const dvec3 p : {dvec3(0.5, 0, 0), dvec3(0.2, 1e-4, 0.3), dvec3(0), dvec3(1e5, 2e5, 0)}) options.lights.push_back(pointLamp(scale * p));
+            for (const dvec3 p :
+                 {dvec3(0.5, 0, 0), dvec3(0.2, 1e-4, 0.3), dvec3(0), dvec3(1e5, 2e5, 0)})
+                options.lights.push_back(pointLamp(scale * p));
             options.lights.push_back(lamp(gpu::kLightDirectional));
             gpu::LightData panel = lamp(gpu::kLightRect);
             panel.position = vec4(0, float(scale), 0, 0);
@@ -267,17 +335,27 @@ TEST_P(MediaMarch, NothingIsEverNegativeOrNotFinite) {
             for (int i = 0; i < 512; ++i) {
                 dvec3 d = glm::normalize(dvec3(uniform(-1, 1), uniform(-1, 1), uniform(-1, 1)));
                 if (i < 6) d = dvec3(i / 2 == 0, i / 2 == 1, i / 2 == 2) * (i % 2 ? -1.0 : 1.0);
-                const dvec3 o = i % 3 == 0 ? dvec3(0) : (i % 3 == 1 ? scale * dvec3(0.5, -0.5, 0) : scale * dvec3(uniform(-2, 2), uniform(-2, 2), uniform(-2, 2)));
-                inputs.emplace_back(vec3(o), float(i % 5 == 0 ? 1e30 : (i % 5 == 1 ? 0.0 : scale * uniform(0, 5))));
+                const dvec3 o = i % 3 == 0
+                                    ? dvec3(0)
+                                    : (i % 3 == 1 ? scale * dvec3(0.5, -0.5, 0)
+                                                  : scale * dvec3(uniform(-2, 2), uniform(-2, 2),
+                                                                  uniform(-2, 2)));
+                inputs.emplace_back(
+                    vec3(o), float(i % 5 == 0 ? 1e30 : (i % 5 == 1 ? 0.0 : scale * uniform(0, 5))));
                 inputs.emplace_back(vec3(d), 0);
             }
-            const auto outputs = compute.run(library, kIncludes, "MarchResult r = marchMedia(Ray(inputs[2u * id].xyz, inputs[2u * id + 1u].xyz), inputs[2u * id].w,"
-                                             "kMarchInScatter | kMarchEmission, 6u, uvec2(id % 64u, id / 64u));"
-                                             "vec3 least = min(r.inScatter, min(r.emission, r.opticalDepth));"
-                                             "bool good = isFiniteNumber(r.inScatter) && isFiniteNumber(r.emission) && isFiniteNumber(r.opticalDepth) && minimumOf(least) >= 0.0;"
-                                             "outputs[id] = vec4(good ? 1.0 : 0.0, r.inScatter.x, r.emission.x, r.opticalDepth.x);", inputs, 512);
+            const auto outputs = compute.run(
+                library, kIncludes,
+                "MarchResult r = marchMedia(Ray(inputs[2u * id].xyz, inputs[2u * id + 1u].xyz), inputs[2u * id].w,"
+                "kMarchInScatter | kMarchEmission, 6u, uvec2(id % 64u, id / 64u));"
+                "vec3 least = min(r.inScatter, min(r.emission, r.opticalDepth));"
+                "bool good = isFiniteNumber(r.inScatter) && isFiniteNumber(r.emission) && isFiniteNumber(r.opticalDepth) && minimumOf(least) >= 0.0;"
+                "outputs[id] = vec4(good ? 1.0 : 0.0, r.inScatter.x, r.emission.x, r.opticalDepth.x);",
+                inputs, 512);
             for (size_t i = 0; i < outputs.size(); ++i)
-                EXPECT_EQ(outputs[i].x, 1.0f) << "scale " << scale << " flags " << flags << " ray " << i << ": " << outputs[i].y << " " << outputs[i].z << " " << outputs[i].w;
+                EXPECT_EQ(outputs[i].x, 1.0f)
+                    << "scale " << scale << " flags " << flags << " ray " << i << ": "
+                    << outputs[i].y << " " << outputs[i].z << " " << outputs[i].w;
         }
     }
 }

@@ -44,19 +44,30 @@ protected:
 
     Picture render(const Scene& scene, int width, int height, bool inScatter = true) {
         EXPECT_TRUE(system->update(scene, dvec3(0)).ok());
-        const ViewResources view = makeView({&camera, worldFromCamera, dvec3(0), 10, width, height, frameIndex, 0, converge});
-        const std::vector<Bounds> surfaces = surface.empty() ? std::vector<Bounds>{} : std::vector<Bounds>{surface};
+        const ViewResources view = makeView(
+            {&camera, worldFromCamera, dvec3(0), 10, width, height, frameIndex, 0, converge});
+        const std::vector<Bounds> surfaces =
+            surface.empty() ? std::vector<Bounds>{} : std::vector<Bounds>{surface};
         uploadLights();
         fg::FrameGraph& graph = executor->beginFrame();
         MediaFrame frame = system->beginFrame(graph, {&view, surfaces, lights, false});
         addOpticalDepthPass(graph, *system, frame);
-        MediumMarchInputs inputs{view, addImage(graph, "depth", fg::texture2D(fg::Format::R32F, width, height)), {}, inScatter, true};
-        inputs.lights.lights = graph.importBuffer("lights", lightBuffer, {std::max<size_t>(lights.size(), 1) * sizeof(gpu::LightData)}, lightVersion);
+        MediumMarchInputs inputs{
+            view,
+            addImage(graph, "depth", fg::texture2D(fg::Format::R32F, width, height)),
+            {},
+            inScatter,
+            true};
+        inputs.lights.lights = graph.importBuffer(
+            "lights", lightBuffer, {std::max<size_t>(lights.size(), 1) * sizeof(gpu::LightData)},
+            lightVersion);
         inputs.lights.shadowViews = inputs.lights.lights; // no light names one
-        inputs.lights.shadowAtlas = addImage(graph, "shadows", {fg::TextureKind::Tex2DArray, fg::Format::R32F, 1, 1, 1, 1});
+        inputs.lights.shadowAtlas =
+            addImage(graph, "shadows", {fg::TextureKind::Tex2DArray, fg::Format::R32F, 1, 1, 1, 1});
         inputs.lights.lightCount = uint32_t(lights.size());
         const MediumMarch march = addMediumMarchPass(graph, frame, inputs);
-        for (const fg::TextureHandle handle : {march.transmittance, march.inScatter, march.emission})
+        for (const fg::TextureHandle handle :
+             {march.transmittance, march.inScatter, march.emission})
             if (handle) graph.markOutput(handle);
         const Result<void> done = executor->execute();
         EXPECT_TRUE(done.ok()) << (done.ok() ? "" : done.message());
@@ -65,9 +76,13 @@ protected:
         if (march.inScatter) picture.inScatter = executor->readImage(march.inScatter);
         if (march.emission) picture.emission = executor->readImage(march.emission);
         for (const fg::PassReport& pass : executor->report().passes) {
-            if (pass.name == "media.march") picture.march = pass.status, picture.marchReason = pass.reason, picture.marchMs = pass.gpuMs;
+            if (pass.name == "media.march")
+                picture.march = pass.status, picture.marchReason = pass.reason,
+                picture.marchMs = pass.gpuMs;
             if (pass.name == "media.upsample") picture.upsampleMs = pass.gpuMs;
-            if (pass.name == "media.opticalDepth") picture.opticalDepth = pass.status, picture.opticalDepthReason = pass.reason, picture.opticalDepthMs = pass.gpuMs;
+            if (pass.name == "media.opticalDepth")
+                picture.opticalDepth = pass.status, picture.opticalDepthReason = pass.reason,
+                picture.opticalDepthMs = pass.gpuMs;
         }
         return picture;
     }
@@ -75,8 +90,10 @@ protected:
     /// The ray through the centre of a pixel, row 0 at the top; there is no jitter.
     [[nodiscard]] RaySegment ray(int x, int y, int width, int height) const {
         const double t = std::tan(0.5 * camera.yfov);
-        const dvec3 d((2 * (x + 0.5) / width - 1) * t * width / height, (1 - 2 * (y + 0.5) / height) * t, -1);
-        return {dvec3(worldFromCamera[3]), glm::normalize(dmat3(worldFromCamera) * d), std::numeric_limits<double>::infinity()};
+        const dvec3 d((2 * (x + 0.5) / width - 1) * t * width / height,
+                      (1 - 2 * (y + 0.5) / height) * t, -1);
+        return {dvec3(worldFromCamera[3]), glm::normalize(dmat3(worldFromCamera) * d),
+                std::numeric_limits<double>::infinity()};
     }
 
     void addSun(const vec3& direction) {
@@ -114,18 +131,28 @@ private:
     void uploadLights() {
         if (lightBuffer.id) executor->release(lightBuffer);
         const std::vector<gpu::LightData> none(1);
-        lightBuffer = executor->registerBuffer("lights", gl::Buffer("lights", std::as_bytes(std::span(lights.empty() ? none : lights))));
+        lightBuffer = executor->registerBuffer(
+            "lights",
+            gl::Buffer("lights", std::as_bytes(std::span(lights.empty() ? none : lights))));
         lightVersion = nextVersion();
     }
     /// All zeros: as depth, no surface anywhere.
-    static fg::TextureHandle addImage(fg::FrameGraph& graph, const char* name, const fg::TextureDesc& desc) {
-        struct Data { fg::TextureHandle image; };
-        return graph.addPass<Data>(name,
-            [&](fg::Builder& builder, Data& data) { data.image = builder.create(name, desc, fg::Access::TransferWrite); },
-            [](const Data& data, fg::PassContext& context) {
-                const float nothing[4] = {0, 0, 0, 0};
-                context.clearTexture(data.image, nothing);
-            }).image;
+    static fg::TextureHandle addImage(fg::FrameGraph& graph, const char* name,
+                                      const fg::TextureDesc& desc) {
+        struct Data {
+            fg::TextureHandle image;
+        };
+        return graph
+            .addPass<Data>(
+                name,
+                [&](fg::Builder& builder, Data& data) {
+                    data.image = builder.create(name, desc, fg::Access::TransferWrite);
+                },
+                [](const Data& data, fg::PassContext& context) {
+                    const float nothing[4] = {0, 0, 0, 0};
+                    context.clearTexture(data.image, nothing);
+                })
+            .image;
     }
     fg::StaticBuffer lightBuffer;
     Version lightVersion = 0;
@@ -142,14 +169,17 @@ Medium puff() {
         for (int y = 0; y < kSize; ++y)
             for (int x = 0; x < kSize; ++x) {
                 const double r = glm::length(dvec3(x, y, z) - 19.5) / 19.0;
-                voxels[size_t((z * kSize + y) * kSize + x)] = r < 1 ? float(1 - r) * noise(engine) : 0.0f;
+                voxels[size_t((z * kSize + y) * kSize + x)] =
+                    r < 1 ? float(1 - r) * noise(engine) : 0.0f;
             }
     Medium medium;
     medium.name = "puff";
     medium.kind = MediumKind::Grid;
     medium.scattering = vec3(3, 2, 1);
     medium.absorption = vec3(0.2f, 0.3f, 0.9f);
-    medium.density = std::make_shared<BrickGrid>(makeBrickGrid(voxels, ivec3(0), ivec3(kSize), glm::translate(glm::scale(dmat4(1.0), dvec3(0.05)), dvec3(-19.5))));
+    medium.density = std::make_shared<BrickGrid>(
+        makeBrickGrid(voxels, ivec3(0), ivec3(kSize),
+                      glm::translate(glm::scale(dmat4(1.0), dvec3(0.05)), dvec3(-19.5))));
     return medium;
 }
 
@@ -182,17 +212,22 @@ double meanDifference(const Image& a, const Image& b) {
 
 TEST_P(MediaPasses, TransmittanceOfGridsIsExactInExactMode) {
     const Medium medium = puff();
-    const dmat4 world = glm::rotate(glm::scale(dmat4(1.0), dvec3(1, 0.7, 1.3)), 0.6, glm::normalize(dvec3(1, 2, 0)));
+    const dmat4 world = glm::rotate(glm::scale(dmat4(1.0), dvec3(1, 0.7, 1.3)), 0.6,
+                                    glm::normalize(dvec3(1, 2, 0)));
     const Scene scene = sceneWith({medium}, {world});
     system->settings().integration = MediaIntegration::Exact;
     addSun(vec3(0, -1, 0));
-    for (const bool inScatter : {true, false}) { // the march, and the pass that computes transmittance alone
+    for (const bool inScatter :
+         {true, false}) { // the march, and the pass that computes transmittance alone
         const Picture picture = render(scene, 40, 30, inScatter);
         ASSERT_EQ(picture.transmittance.width, 40);
         for (int y = 0; y < 30; ++y)
             for (int x = 0; x < 40; ++x) {
                 const dvec3 depth = opticalDepth(medium, world, ray(x, y, 40, 30));
-                for (int c = 0; c < 3; ++c) EXPECT_NEAR(double(picture.transmittance.at(x, y)[c]), std::exp(-depth[c]), 1e-4) << x << " " << y;
+                for (int c = 0; c < 3; ++c)
+                    EXPECT_NEAR(double(picture.transmittance.at(x, y)[c]), std::exp(-depth[c]),
+                                1e-4)
+                        << x << " " << y;
             }
     }
 }
@@ -215,7 +250,8 @@ TEST_P(MediaPasses, LightVolumesAgreeWithMarchingToTheLights) {
         settings.lightOpticalDepth = LightOpticalDepth::Exact;
         const Picture marched = render(scene, 32, 24);
         EXPECT_EQ(marched.opticalDepth, fg::PassStatus::Skipped);
-        EXPECT_EQ(marched.opticalDepthReason, "grids are marched for every point (media.lightOpticalDepth)");
+        EXPECT_EQ(marched.opticalDepthReason,
+                  "grids are marched for every point (media.lightOpticalDepth)");
         EXPECT_LT(meanDifference(volume.inScatter, marched.inScatter), 0.02);
     }
 }
@@ -236,17 +272,20 @@ TEST_P(MediaPasses, LightVolumesAreKeptUntilSomethingChanges) {
 }
 
 TEST_P(MediaPasses, ReducedResolutionsAreCloseAndTransmittanceIsNot) {
-    const Scene scene = sceneWith({puff(), mediumBox(dvec3(4, 0.5, 4))}, {dmat4(1.0), glm::translate(dmat4(1.0), dvec3(0, -1, 0))});
+    const Scene scene = sceneWith({puff(), mediumBox(dvec3(4, 0.5, 4))},
+                                  {dmat4(1.0), glm::translate(dmat4(1.0), dvec3(0, -1, 0))});
     addSun(vec3(0.3f, -1, -0.2f));
     addLamp(vec3(1.5f, 0.5f, 1));
     MediaSettings& settings = system->settings();
     settings.integration = MediaIntegration::Exact;
     const Picture full = render(scene, 96, 72);
-    for (const auto& [resolution, tolerance] : {std::pair(MarchResolution::Half, 0.05), std::pair(MarchResolution::Quarter, 0.12)}) {
+    for (const auto& [resolution, tolerance] :
+         {std::pair(MarchResolution::Half, 0.05), std::pair(MarchResolution::Quarter, 0.12)}) {
         settings.resolution = resolution;
         const Picture reduced = render(scene, 96, 72);
         EXPECT_LT(meanDifference(reduced.inScatter, full.inScatter), tolerance);
-        EXPECT_LT(meanDifference(reduced.transmittance, full.transmittance), 1e-5); // computed for every pixel
+        EXPECT_LT(meanDifference(reduced.transmittance, full.transmittance),
+                  1e-5); // computed for every pixel
     }
 }
 
@@ -255,11 +294,12 @@ TEST_P(MediaPasses, ListsOfLightsLoseNothing) {
     std::mt19937_64 engine(seed());
     std::uniform_real_distribution<float> place(-1.5f, 1.5f);
     std::vector<gpu::LightData> all;
-    for (int i = 0; i < 30; ++i) addLamp(vec3(place(engine), place(engine), place(engine)), 0.2f + 0.05f * float(i));
+    for (int i = 0; i < 30; ++i)
+        addLamp(vec3(place(engine), place(engine), place(engine)), 0.2f + 0.05f * float(i));
     all.swap(lights);
     lights = all;
     const Image together = render(scene, 50, 38).inScatter; // not whole groups of 8×8
-    lights.assign(all.begin(), all.begin() + 15); // few enough that no list is made
+    lights.assign(all.begin(), all.begin() + 15);           // few enough that no list is made
     const Image first = render(scene, 50, 38).inScatter;
     lights.assign(all.begin() + 15, all.end());
     const Image second = render(scene, 50, 38).inScatter;
@@ -275,19 +315,24 @@ TEST_P(MediaPasses, SaysWhyNothingIsMarched) {
     EXPECT_EQ(render(Scene{}, 8, 8).marchReason, "no medium in the scene");
     Medium vacuum = mediumBox(dvec3(1));
     vacuum.scattering = vacuum.absorption = vec3(0);
-    EXPECT_EQ(render(sceneWith({vacuum}, {dmat4(1.0)}), 8, 8).marchReason, "no visible medium absorbs, scatters or emits");
+    EXPECT_EQ(render(sceneWith({vacuum}, {dmat4(1.0)}), 8, 8).marchReason,
+              "no visible medium absorbs, scatters or emits");
     // Behind the camera, with nothing in view that it could shade.
     const dmat4 behind = glm::translate(dmat4(1.0), dvec3(0, 0, 20));
-    EXPECT_EQ(render(sceneWith({mediumBox(dvec3(1))}, {behind}), 8, 8).marchReason, "no medium in view or on a light's path");
+    EXPECT_EQ(render(sceneWith({mediumBox(dvec3(1))}, {behind}), 8, 8).marchReason,
+              "no medium in view or on a light's path");
     // Above the view, between the sun and a surface in view.
     surface.include(dvec3(-1, -1, -1));
     surface.include(dvec3(1, 1, 1));
     const dmat4 above = glm::translate(dmat4(1.0), dvec3(0, 20, 0));
-    EXPECT_EQ(render(sceneWith({mediumBox(dvec3(1))}, {above}), 8, 8).marchReason, "no medium in view");
+    EXPECT_EQ(render(sceneWith({mediumBox(dvec3(1))}, {above}), 8, 8).marchReason,
+              "no medium in view");
     const dmat4 aside = glm::translate(dmat4(1.0), dvec3(20, 0, 0));
-    EXPECT_EQ(render(sceneWith({mediumBox(dvec3(1))}, {aside}), 8, 8).marchReason, "no medium in view or on a light's path");
+    EXPECT_EQ(render(sceneWith({mediumBox(dvec3(1))}, {aside}), 8, 8).marchReason,
+              "no medium in view or on a light's path");
     system->settings().enabled = false;
-    EXPECT_EQ(render(sceneWith({mediumBox(dvec3(1))}, {dmat4(1.0)}), 8, 8).marchReason, "setting media.enabled is off");
+    EXPECT_EQ(render(sceneWith({mediumBox(dvec3(1))}, {dmat4(1.0)}), 8, 8).marchReason,
+              "setting media.enabled is off");
     system->settings().enabled = true;
     Medium smoke = mediumBox(dvec3(1));
     smoke.scattering = vec3(0);
@@ -296,12 +341,15 @@ TEST_P(MediaPasses, SaysWhyNothingIsMarched) {
     EXPECT_LT(dark.transmittance.at(4, 4)[0], 1.0f); // it still absorbs
     lights.clear();
     const Picture unlit = render(sceneWith({mediumBox(dvec3(1))}, {dmat4(1.0)}), 8, 8);
-    EXPECT_EQ(unlit.marchReason, "media add no light: LVE is not wanted or there is no light in the scene");
+    EXPECT_EQ(unlit.marchReason,
+              "media add no light: LVE is not wanted or there is no light in the scene");
 }
 
 TEST_P(MediaPasses, DroppedMediaLeaveThePictureBitIdentical) {
     std::mt19937_64 engine(seed());
-    const auto uniform = [&](double a, double b) { return std::uniform_real_distribution<double>(a, b)(engine); };
+    const auto uniform = [&](double a, double b) {
+        return std::uniform_real_distribution<double>(a, b)(engine);
+    };
     addSun(vec3(0.3f, -1, -0.2f));
     addLamp(vec3(1, 2, 1), 6);
     int dropped = 0;
@@ -310,7 +358,10 @@ TEST_P(MediaPasses, DroppedMediaLeaveThePictureBitIdentical) {
         std::vector<dmat4> world{dmat4(1.0)};
         for (int k = 0; k < 6; ++k) {
             media.push_back(mediumBox(dvec3(uniform(0.5, 2), uniform(0.5, 2), uniform(0.5, 2))));
-            world.push_back(glm::rotate(glm::translate(dmat4(1.0), dvec3(uniform(-15, 15), uniform(-15, 15), uniform(-15, 15))), uniform(0, 3), dvec3(0, 1, 0)));
+            world.push_back(
+                glm::rotate(glm::translate(dmat4(1.0), dvec3(uniform(-15, 15), uniform(-15, 15),
+                                                             uniform(-15, 15))),
+                            uniform(0, 3), dvec3(0, 1, 0)));
         }
         const Scene scene = sceneWith(media, world);
         system->settings().dropUnseen = true;
@@ -319,11 +370,16 @@ TEST_P(MediaPasses, DroppedMediaLeaveThePictureBitIdentical) {
         const Picture without = render(scene, 24, 18);
         std::vector<std::string> notes;
         const std::vector<PlacedMedium> placed = placeMedia(scene, dvec3(0), notes);
-        const ViewResources view = makeView({&camera, worldFromCamera, dvec3(0), 10, 24, 18, 0, 0, false});
-        for (const MediumUse use : classifyMedia(placed, {&view.data, {}, lights})) dropped += use == MediumUse::Dropped;
-        for (const auto& [a, b] : {std::pair(&with.inScatter, &without.inScatter), std::pair(&with.transmittance, &without.transmittance)})
+        const ViewResources view =
+            makeView({&camera, worldFromCamera, dvec3(0), 10, 24, 18, 0, 0, false});
+        for (const MediumUse use : classifyMedia(placed, {&view.data, {}, lights}))
+            dropped += use == MediumUse::Dropped;
+        for (const auto& [a, b] : {std::pair(&with.inScatter, &without.inScatter),
+                                   std::pair(&with.transmittance, &without.transmittance)})
             for (int y = 0; y < 18; ++y)
-                for (int x = 0; x < 24; ++x) ASSERT_EQ(std::memcmp(a->at(x, y), b->at(x, y), 3 * sizeof(float)), 0) << i << ": " << x << " " << y;
+                for (int x = 0; x < 24; ++x)
+                    ASSERT_EQ(std::memcmp(a->at(x, y), b->at(x, y), 3 * sizeof(float)), 0)
+                        << i << ": " << x << " " << y;
     }
     EXPECT_GT(dropped, 10) << "the scenes must have media to drop";
 }

@@ -13,12 +13,15 @@ using test::expectLoadedOrRefused;
 constexpr uint64_t kCopies = 1000;
 
 /// `count` damaged copies of the file `name` of `folder`, its neighbours intact beside it.
-void damageAndLoad(const fs::path& folder, const std::string& name, uint64_t count, uint64_t firstSeed) {
+void damageAndLoad(const fs::path& folder, const std::string& name, uint64_t count,
+                   uint64_t firstSeed) {
     const fs::path scratch = test::scratchDir("gltf-damaged");
     for (const auto& entry : fs::directory_iterator(folder)) {
         // Not copy_file: it would copy that the originals are read-only, too.
         if (entry.is_regular_file() && entry.file_size() < 200000) {
-            ASSERT_TRUE(writeFileAtomically(scratch / entry.path().filename(), readFile(entry.path()).value()).ok());
+            ASSERT_TRUE(writeFileAtomically(scratch / entry.path().filename(),
+                                            readFile(entry.path()).value())
+                            .ok());
         }
     }
     const std::string good = readFile(folder / name).value();
@@ -59,16 +62,21 @@ TEST(GltfHostile, DamagedDracoFiles) {
 
 TEST(GltfHostile, DamagedGltfFiles) {
     const fs::path models = REQUIRE_CONTENT("gltf/khronos");
-    for (const char* model : {"BoxTextured", "RiggedSimple", "SimpleSparseAccessor", "MultiUVTest", "MorphPrimitivesTest"})
+    for (const char* model : {"BoxTextured", "RiggedSimple", "SimpleSparseAccessor", "MultiUVTest",
+                              "MorphPrimitivesTest"})
         damageAndLoad(models / model, std::string(model) + ".gltf", kCopies / 5, test::seed());
-    for (const char* binary : {"BoxTextured0.bin", "CesiumLogoFlat.png"}) { // the neighbours damaged
+    for (const char* binary :
+         {"BoxTextured0.bin", "CesiumLogoFlat.png"}) { // the neighbours damaged
         const fs::path scratch = test::scratchDir("gltf-neighbours");
         for (const auto& entry : fs::directory_iterator(models / "BoxTextured"))
-            ASSERT_TRUE(writeFileAtomically(scratch / entry.path().filename(), readFile(entry.path()).value()).ok());
+            ASSERT_TRUE(writeFileAtomically(scratch / entry.path().filename(),
+                                            readFile(entry.path()).value())
+                            .ok());
         const std::string good = readFile(models / "BoxTextured" / binary).value();
         for (uint64_t i = 0; i < kCopies / 4; ++i) {
             SCOPED_TRACE(std::string(binary) + ", seed " + std::to_string(test::seed() + i));
-            ASSERT_TRUE(writeFileAtomically(scratch / binary, test::damaged(good, test::seed() + i)).ok());
+            ASSERT_TRUE(
+                writeFileAtomically(scratch / binary, test::damaged(good, test::seed() + i)).ok());
             expectLoadedOrRefused(scratch / "BoxTextured.gltf");
         }
     }
@@ -77,24 +85,36 @@ TEST(GltfHostile, DamagedGltfFiles) {
 TEST(GltfHostile, SmallFilesCannotAskForMuch) {
     const fs::path path = test::scratchDir("gltf-bombs") / "bomb.gltf";
     const auto refused = [&](const std::string& keys) {
-        EXPECT_TRUE(writeFileAtomically(path, R"({"asset": {"version": "2.0"}, )" + keys + "}").ok());
+        EXPECT_TRUE(
+            writeFileAtomically(path, R"({"asset": {"version": "2.0"}, )" + keys + "}").ok());
         const auto result = loadScene(path);
         EXPECT_FALSE(result.ok()) << keys.substr(0, 200);
     };
-    const std::string zeros = R"("accessors": [{"componentType": 5126, "type": "VEC3", "count": 4000000}], )";
+    const std::string zeros =
+        R"("accessors": [{"componentType": 5126, "type": "VEC3", "count": 4000000}], )";
     std::string primitives, nodes;
-    for (int i = 0; i < 10000; ++i) primitives += std::string(i ? "," : "") + R"({"attributes": {"POSITION": 0}})";
-    refused(zeros + R"("meshes": [{"primitives": [)" + primitives + R"(]}], "nodes": [{"mesh": 0}])");
-    refused(R"("accessors": [{"componentType": 5126, "type": "VEC3", "count": 3}, {"componentType": 5126, "type": "VEC3", "count": 4000000000}],
+    for (int i = 0; i < 10000; ++i)
+        primitives += std::string(i ? "," : "") + R"({"attributes": {"POSITION": 0}})";
+    refused(zeros + R"("meshes": [{"primitives": [)" + primitives +
+            R"(]}], "nodes": [{"mesh": 0}])");
+    refused(
+        R"("accessors": [{"componentType": 5126, "type": "VEC3", "count": 3}, {"componentType": 5126, "type": "VEC3", "count": 4000000000}],
                "nodes": [{"extensions": {"EXT_mesh_gpu_instancing": {"attributes": {"TRANSLATION": 1}}}}])");
-    refused(R"("bufferViews": [{"buffer": 0, "byteLength": 8, "extensions": {"EXT_meshopt_compression": {"buffer": 0, "byteLength": 8,
+    refused(
+        R"("bufferViews": [{"buffer": 0, "byteLength": 8, "extensions": {"EXT_meshopt_compression": {"buffer": 0, "byteLength": 8,
                "byteStride": 256, "count": 4294967295, "mode": "ATTRIBUTES"}}}], "buffers": [{"byteLength": 8, "uri": "data:;base64,oAAAAAAAAAA="}],
                "accessors": [{"bufferView": 0, "componentType": 5126, "type": "VEC3", "count": 3}],
                "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}], "nodes": [{"mesh": 0}])");
     refused(R"("nodes": )" + std::string(100000, '['));
     // A chain of nodes as deep as a file can make it is no problem.
-    for (int i = 0; i < 50000; ++i) nodes += (i ? ", " : "") + (i < 49999 ? R"({"children": [)" + std::to_string(i + 1) + "]}" : std::string("{}"));
-    ASSERT_TRUE(writeFileAtomically(path, R"({"asset": {"version": "2.0"}, "scenes": [{"nodes": [0]}], "nodes": [)" + nodes + "]}").ok());
+    for (int i = 0; i < 50000; ++i)
+        nodes += (i ? ", " : "") + (i < 49999 ? R"({"children": [)" + std::to_string(i + 1) + "]}"
+                                              : std::string("{}"));
+    ASSERT_TRUE(
+        writeFileAtomically(
+            path, R"({"asset": {"version": "2.0"}, "scenes": [{"nodes": [0]}], "nodes": [)" +
+                      nodes + "]}")
+            .ok());
     expectLoadedOrRefused(path);
     EXPECT_TRUE(loadScene(path).ok());
 }

@@ -38,7 +38,9 @@ uint64_t scramble(uint64_t z) { // SplitMix64
 std::string damaged(std::string bytes, uint64_t seed) {
     uint64_t state = scramble(seed);
     const auto draw = [&](uint64_t below) { return (state = scramble(state)) % below; };
-    const auto flip = [&](uint64_t below) { bytes[draw(std::min<uint64_t>(below, bytes.size()))] ^= char(1u << draw(8)); };
+    const auto flip = [&](uint64_t below) {
+        bytes[draw(std::min<uint64_t>(below, bytes.size()))] ^= char(1u << draw(8));
+    };
     switch (draw(5)) {
     case 0: bytes.resize(draw(bytes.size())); break;
     case 1: flip(bytes.size()); break;
@@ -48,7 +50,12 @@ std::string damaged(std::string bytes, uint64_t seed) {
         break;
     default: { // a number overwritten with an extreme one
         const size_t at = draw(std::min<uint64_t>(bytes.size() - 8, draw(2) ? 4096 : bytes.size()));
-        const uint64_t extremes[] = {0, ~uint64_t(0), 0x7fffffffffffffffu, 0x8000000080000000u, 0x7fc000007fc00000u, 0x0000001000000010u};
+        const uint64_t extremes[] = {0,
+                                     ~uint64_t(0),
+                                     0x7fffffffffffffffu,
+                                     0x8000000080000000u,
+                                     0x7fc000007fc00000u,
+                                     0x0000001000000010u};
         const uint64_t value = extremes[draw(std::size(extremes))];
         for (int i = 0; i < (draw(2) ? 4 : 8); ++i) bytes[at + size_t(i)] = char(value >> (8 * i));
     }
@@ -57,7 +64,9 @@ std::string damaged(std::string bytes, uint64_t seed) {
 }
 
 bool isOneSentence(const std::string& message, const fs::path& file) {
-    if (message.size() < 20 || message.size() > 1500 || message.find(file.filename().string()) == std::string::npos) return false;
+    if (message.size() < 20 || message.size() > 1500 ||
+        message.find(file.filename().string()) == std::string::npos)
+        return false;
     for (const char c : message)
         if (static_cast<unsigned char>(c) < 0x20) return false;
     return true;
@@ -68,14 +77,17 @@ bool isSound(const GridFile& file) {
     for (const float sample : grid.samples)
         if (!(sample >= 0 && sample <= kMaximumVoxel)) return false;
     for (const Brick& brick : grid.bricks)
-        if (!(brick.minimum >= 0 && brick.minimum <= brick.maximum && brick.maximum <= kMaximumVoxel)) return false;
+        if (!(brick.minimum >= 0 && brick.minimum <= brick.maximum &&
+              brick.maximum <= kMaximumVoxel))
+            return false;
     return true;
 }
 
 void survive(const fs::path& original, long cases) {
     std::ifstream stream(original, std::ios::binary);
     const std::string bytes((std::istreambuf_iterator<char>(stream)), {});
-    const fs::path folder = test::scratchDir("damage"), path = folder / ("damaged" + original.extension().string());
+    const fs::path folder = test::scratchDir("damage"),
+                   path = folder / ("damaged" + original.extension().string());
     GridRequest request;
     request.limits.seconds = 20;
     request.limits.readerBytes = uint64_t(2) << 30;
@@ -87,23 +99,29 @@ void survive(const fs::path& original, long cases) {
     std::map<std::string, int> outcomes;
     double slowest = 0;
     for (long i = only < 0 ? 0 : only; i < (only < 0 ? cases : only + 1); ++i) {
-        std::ofstream(path, std::ios::binary | std::ios::trunc) << damaged(bytes, test::seed() * 1000003 + uint64_t(i));
+        std::ofstream(path, std::ios::binary | std::ios::trunc)
+            << damaged(bytes, test::seed() * 1000003 + uint64_t(i));
         const auto start = std::chrono::steady_clock::now();
         const Result<GridFile> file = importGrid(path, request);
-        const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+        const double seconds =
+            std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
         slowest = std::max(slowest, seconds);
-        const std::string repeat = "repeat: TYNDALL_SEED=" + std::to_string(test::seed()) + " TYNDALL_CASE=" + std::to_string(i);
+        const std::string repeat = "repeat: TYNDALL_SEED=" + std::to_string(test::seed()) +
+                                   " TYNDALL_CASE=" + std::to_string(i);
         if (file.ok()) {
             ASSERT_TRUE(isSound(*file)) << repeat;
         } else {
             ASSERT_TRUE(isOneSentence(file.message(), path)) << file.message() << "\n" << repeat;
         }
         ASSERT_LT(seconds, request.limits.seconds + 20) << repeat;
-        const std::string kind = file.ok() ? "taken" : file.message().substr(file.message().find("' ") + 2);
+        const std::string kind =
+            file.ok() ? "taken" : file.message().substr(file.message().find("' ") + 2);
         outcomes[kind.substr(0, 90)] += 1;
     }
-    const double total = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
-    std::printf("%ld damaged copies of %s in %.1f s, the slowest %.2f s\n", cases, original.filename().c_str(), total, slowest);
+    const double total =
+        std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
+    std::printf("%ld damaged copies of %s in %.1f s, the slowest %.2f s\n", cases,
+                original.filename().c_str(), total, slowest);
     for (const auto& [kind, count] : outcomes) std::printf("%6d  %s\n", count, kind.c_str());
     if (only < 0 && cases >= 50) {
         EXPECT_GT(outcomes["taken"], 0) << "some damage is harmless";
@@ -119,7 +137,9 @@ constexpr long kCases = 50;
 
 long casesToTry() { return fromEnvironment("TYNDALL_CASES", kCases); }
 
-TEST(DamagedGrids, OpenVdbIsTakenOrRefusedInOneSentence) { survive(REQUIRE_CONTENT("vdb/sphere_fog_tiny.vdb"), casesToTry()); }
+TEST(DamagedGrids, OpenVdbIsTakenOrRefusedInOneSentence) {
+    survive(REQUIRE_CONTENT("vdb/sphere_fog_tiny.vdb"), casesToTry());
+}
 
 TEST(DamagedGrids, BloscOpenVdbIsTakenOrRefusedInOneSentence) {
     survive(REQUIRE_CONTENT("vdb/smoke_doublegrid_blosc.vdb"), casesToTry() / 2);
@@ -132,7 +152,8 @@ TEST(DamagedGrids, ZippedNanoVdbIsTakenOrRefusedInOneSentence) {
 TEST(DamagedGrids, PlainNanoVdbIsTakenOrRefusedInOneSentence) {
     // Nothing but the checks of the tree stands between the damage and the memory.
     const fs::path plain = test::scratchDir("plain") / "plain.nvdb";
-    test::convertToNanoVdb(REQUIRE_CONTENT("vdb/sphere_fog_tiny.vdb"), plain, test::NanoType::FpN, test::NanoCodec::None);
+    test::convertToNanoVdb(REQUIRE_CONTENT("vdb/sphere_fog_tiny.vdb"), plain, test::NanoType::FpN,
+                           test::NanoCodec::None);
     survive(plain, casesToTry());
 }
 

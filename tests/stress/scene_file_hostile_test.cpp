@@ -14,7 +14,8 @@ TEST(SceneFileHostile, DamagedCopiesAreLoadedOrRefused) {
         const std::string good = readFile(test::sourceDir() / "content" / name).value();
         for (uint64_t i = 0; i < 500; ++i) {
             SCOPED_TRACE(std::string(name) + ", seed " + std::to_string(test::seed() + i));
-            ASSERT_TRUE(writeFileAtomically(scratch / name, test::damaged(good, test::seed() + i)).ok());
+            ASSERT_TRUE(
+                writeFileAtomically(scratch / name, test::damaged(good, test::seed() + i)).ok());
             test::expectLoadedOrRefused(scratch / name);
         }
     }

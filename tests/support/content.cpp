@@ -16,7 +16,8 @@ fs::path fromEnvironment(const char* name, const fs::path& otherwise) {
 struct ScratchFolders {
     std::vector<fs::path> folders;
     ~ScratchFolders() {
-        std::error_code ignored; // Nothing useful can be done about a temporary folder that will not go.
+        std::error_code
+            ignored; // Nothing useful can be done about a temporary folder that will not go.
         for (const fs::path& folder : folders) fs::remove_all(folder, ignored);
     }
 };
@@ -27,7 +28,8 @@ fs::path sourceDir() { return fromEnvironment("TYNDALL_SOURCE_DIR", TYNDALL_SOUR
 fs::path binDir() { return fromEnvironment("TYNDALL_BIN_DIR", TYNDALL_BIN_DIR_DEFAULT); }
 
 std::optional<fs::path> sharedContent(const std::string& relative) {
-    const fs::path root = fromEnvironment("TYNDALL_CONTENT", sourceDir().parent_path() / "shared" / "content");
+    const fs::path root =
+        fromEnvironment("TYNDALL_CONTENT", sourceDir().parent_path() / "shared" / "content");
     const fs::path path = root / relative;
     if (!fs::exists(path)) return std::nullopt;
     return path;
@@ -35,7 +37,8 @@ std::optional<fs::path> sharedContent(const std::string& relative) {
 
 fs::path scratchDir(const std::string& name) {
     static ScratchFolders created;
-    const fs::path folder = fs::temp_directory_path() / ("tyndall-test-" + name + "-" + std::to_string(getpid()));
+    const fs::path folder =
+        fs::temp_directory_path() / ("tyndall-test-" + name + "-" + std::to_string(getpid()));
     fs::remove_all(folder);
     fs::create_directories(folder);
     created.folders.push_back(folder);

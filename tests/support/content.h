@@ -24,7 +24,7 @@ uint64_t seed();
 
 /// Use in a test body: `const auto path = REQUIRE_CONTENT("vdb/smoke1.vdb");`
 #define REQUIRE_CONTENT(RELATIVE)                                                                  \
-    __extension__ ({                                                                               \
+    __extension__({                                                                                \
         const auto found_ = ::tyndall::test::sharedContent(RELATIVE);                              \
         if (!found_) GTEST_SKIP() << "shared content '" << RELATIVE << "' is not here";            \
         *found_;                                                                                   \

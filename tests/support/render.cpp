@@ -31,7 +31,8 @@ gl::Context createContext(gl::Backend backend) {
 
 } // namespace
 
-TestRenderer::TestRenderer(gl::Backend backend, const RendererOptions& options) : context_(createContext(backend)) {
+TestRenderer::TestRenderer(gl::Backend backend, const RendererOptions& options)
+    : context_(createContext(backend)) {
     RendererOptions withPlugins = options;
     withPlugins.builtinPlugins = plugin::builtinPlugins();
     Result<std::unique_ptr<Renderer>> renderer = Renderer::create(context_, withPlugins);
@@ -48,8 +49,10 @@ Rendered TestRenderer::render(const Scene& scene, const RenderOptions& options) 
     context_.makeCurrent();
     renderer_->settings().resetAll();
     for (const std::string& setting : options.settings)
-        if (Result<void> done = renderer_->settings().assign(setting); !done) throw std::runtime_error(done.message());
-    if (Result<void> done = renderer_->setScene(scene); !done) throw std::runtime_error(done.message());
+        if (Result<void> done = renderer_->settings().assign(setting); !done)
+            throw std::runtime_error(done.message());
+    if (Result<void> done = renderer_->setScene(scene); !done)
+        throw std::runtime_error(done.message());
 
     Rendered rendered;
     FrameRequest request;
@@ -77,7 +80,8 @@ Rendered TestRenderer::render(const Scene& scene, const RenderOptions& options) 
     rendered.display = renderer_->readDisplay();
     for (const fg::PassReport& pass : renderer_->report().passes)
         rendered.passes[std::string(pass.name)] =
-            std::string(fg::statusName(pass.status)) + (pass.reason.empty() ? "" : ": " + std::string(pass.reason));
+            std::string(fg::statusName(pass.status)) +
+            (pass.reason.empty() ? "" : ": " + std::string(pass.reason));
     EXPECT_EQ(context_.debugLog().count(gl::Severity::High), 0u) << "OpenGL reported an error";
     return rendered;
 }
@@ -97,14 +101,16 @@ vec3 Rendered::centre(const std::string& term, int radius) const {
     vec3 sum(0);
     int count = 0;
     for (int y = beauty.height / 2 - radius; y <= beauty.height / 2 + radius; ++y)
-        for (int x = beauty.width / 2 - radius; x <= beauty.width / 2 + radius; ++x, ++count) sum += pixel(x, y, term);
+        for (int x = beauty.width / 2 - radius; x <= beauty.width / 2 + radius; ++x, ++count)
+            sum += pixel(x, y, term);
     return sum / float(count);
 }
 
 Scene sceneFromJson(const std::string& json) {
     std::string text = json;
     const auto content = sharedContent("");
-    for (size_t at; content && (at = text.find("{CONTENT}")) != std::string::npos;) text.replace(at, 9, content->string());
+    for (size_t at; content && (at = text.find("{CONTENT}")) != std::string::npos;)
+        text.replace(at, 9, content->string());
     static const std::filesystem::path folder = scratchDir("scenes");
     static int count = 0;
     const std::filesystem::path path = folder / ("scene" + std::to_string(count++) + ".scene.json");

@@ -39,7 +39,8 @@ struct Rendered {
 /// Fails the test on high-severity GL messages and on invalid pixels.
 class TestRenderer {
 public:
-    explicit TestRenderer(gl::Backend backend = gl::Backend::Egl, const RendererOptions& options = {});
+    explicit TestRenderer(gl::Backend backend = gl::Backend::Egl,
+                          const RendererOptions& options = {});
     ~TestRenderer();
     Rendered render(const Scene& scene, const RenderOptions& options = {});
     /// Settings keep their values between calls of render() only through RenderOptions: each call starts from the defaults.

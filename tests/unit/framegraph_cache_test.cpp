@@ -17,22 +17,29 @@ struct FrameGraphCache : ::testing::Test {
     NullExecutor executor;
     FrameGraphImpl& graph = executor.graph;
 
-    TextureHandle cached(const char* name, uint64_t key, TextureHandle in = {}, const TextureDesc& desc = kColor) {
+    TextureHandle cached(const char* name, uint64_t key, TextureHandle in = {},
+                         const TextureDesc& desc = kColor) {
         return graph
-            .addPass<Data>(name,
-                           [&](Builder& b, Data& d) {
-                               if (in) d.in = b.read(in);
-                               d.out = b.create(name, desc);
-                               b.cacheBy(key);
-                           },
-                           kDispatch)
+            .addPass<Data>(
+                name,
+                [&](Builder& b, Data& d) {
+                    if (in) d.in = b.read(in);
+                    d.out = b.create(name, desc);
+                    b.cacheBy(key);
+                },
+                kDispatch)
             .out;
     }
     TextureHandle cachedWrite(const char* name, uint64_t key, TextureHandle over) {
-        return graph.addPass<Data>(name, [&](Builder& b, Data& d) { d.out = b.write(over), b.cacheBy(key); }, kDispatch).out;
+        return graph
+            .addPass<Data>(
+                name, [&](Builder& b, Data& d) { d.out = b.write(over), b.cacheBy(key); },
+                kDispatch)
+            .out;
     }
     void show(TextureHandle in, const char* name = "show") {
-        graph.addPass<Data>(name, [&](Builder& b, Data& d) { d.in = b.read(in), b.sideEffect(); }, kDispatch);
+        graph.addPass<Data>(
+            name, [&](Builder& b, Data& d) { d.in = b.read(in), b.sideEffect(); }, kDispatch);
     }
     PassStatus status(const char* name) { return statusOf(executor.compiled, name); }
 };
@@ -73,7 +80,8 @@ TEST_F(FrameGraphCache, AChangedInputContentOrShapeRunsItAgain) {
 TEST_F(FrameGraphCache, WhatOrdinaryPassesWriteIsNewInEveryFrame) {
     for (int i = 0; i < 3; ++i) {
         executor.beginFrame();
-        const Data& fresh = graph.addPass<Data>("fresh", [](Builder& b, Data& d) { d.out = b.create("f", kColor); }, kDispatch);
+        const Data& fresh = graph.addPass<Data>(
+            "fresh", [](Builder& b, Data& d) { d.out = b.create("f", kColor); }, kDispatch);
         show(cached("made", 0, fresh.out));
         executor.execute();
         EXPECT_EQ(status("made"), PassStatus::Ran);
@@ -83,7 +91,8 @@ TEST_F(FrameGraphCache, WhatOrdinaryPassesWriteIsNewInEveryFrame) {
 TEST_F(FrameGraphCache, ACachedPassDoesNotDemandItsInputs) {
     const auto frame = [&](uint64_t sourceKey, uint64_t version) {
         executor.beginFrame();
-        const TextureHandle import = graph.importTexture("import", StaticTexture{3}, kColor, version);
+        const TextureHandle import =
+            graph.importTexture("import", StaticTexture{3}, kColor, version);
         show(cached("made", 0, cached("source", sourceKey, import)));
         executor.execute();
     };
@@ -106,26 +115,32 @@ TEST_F(FrameGraphCache, AnInputWhoseOwnResultIsGoneIsNotMadeForACachedReader) {
         const TextureHandle source = cached("source", 1);
         show(cached("made", 0, source));
         if (writeOver)
-            show(graph.addPass<Data>("over", [&](Builder& b, Data& d) { d.out = b.write(source); }, kDispatch).out, "show2");
+            show(graph
+                     .addPass<Data>(
+                         "over", [&](Builder& b, Data& d) { d.out = b.write(source); }, kDispatch)
+                     .out,
+                 "show2");
         executor.execute();
     };
     frame(true);
     frame(false);
     EXPECT_EQ(status("made"), PassStatus::Cached);
     EXPECT_EQ(status("source"), PassStatus::Culled);
-    EXPECT_EQ(passNamed(executor.compiled, "source").reason, "only cached passes read what it writes");
+    EXPECT_EQ(passNamed(executor.compiled, "source").reason,
+              "only cached passes read what it writes");
 }
 
 TEST_F(FrameGraphCache, SkippingAnInputIsAChange) {
     const auto frame = [&](bool skipped) {
         executor.beginFrame();
-        const Data& source = graph.addPass<Data>("source",
-                                                 [&](Builder& b, Data& d) {
-                                                     d.out = b.create("s", kColor);
-                                                     b.cacheBy(1);
-                                                     if (skipped) b.skip("no");
-                                                 },
-                                                 kDispatch);
+        const Data& source = graph.addPass<Data>(
+            "source",
+            [&](Builder& b, Data& d) {
+                d.out = b.create("s", kColor);
+                b.cacheBy(1);
+                if (skipped) b.skip("no");
+            },
+            kDispatch);
         show(cached("made", 0, source.out));
         executor.execute();
         return status("made");
@@ -148,7 +163,8 @@ TEST_F(FrameGraphCache, WritersOfOneResourceAreCachedTogetherOrNotAtAll) {
     EXPECT_EQ(status("first"), PassStatus::Cached);
     EXPECT_EQ(status("second"), PassStatus::Cached);
     frame(1, 2);
-    EXPECT_EQ(status("first"), PassStatus::Ran) << "its content was written over: it must be made again";
+    EXPECT_EQ(status("first"), PassStatus::Ran)
+        << "its content was written over: it must be made again";
     EXPECT_EQ(status("second"), PassStatus::Ran);
     frame(1, 2);
     EXPECT_EQ(status("first"), PassStatus::Cached);
@@ -174,7 +190,8 @@ TEST_F(FrameGraphCache, AnOrdinaryWriterSpoilsTheResultForTheNextFrame) {
     for (int i = 0; i < 2; ++i) {
         executor.beginFrame();
         const TextureHandle made = cached("made", 1);
-        const Data& over = graph.addPass<Data>("over", [&](Builder& b, Data& d) { d.out = b.write(made); }, kDispatch);
+        const Data& over = graph.addPass<Data>(
+            "over", [&](Builder& b, Data& d) { d.out = b.write(made); }, kDispatch);
         show(over.out);
         executor.execute();
         EXPECT_EQ(status("made"), PassStatus::Ran);
@@ -214,15 +231,17 @@ TEST_F(FrameGraphCache, AccumulatingPassesAreNeverCached) {
     for (int i = 0; i < 3; ++i) {
         executor.beginFrame();
         const PersistentTexture sum = graph.persistentTexture("sum", kColor);
-        graph.addPass<Data>("add",
-                            [&](Builder& b, Data& d) {
-                                d.in = b.read(sum.handle, Access::StorageRead);
-                                d.out = b.write(sum.handle);
-                                b.cacheBy(1);
-                            },
-                            kDispatch);
+        graph.addPass<Data>(
+            "add",
+            [&](Builder& b, Data& d) {
+                d.in = b.read(sum.handle, Access::StorageRead);
+                d.out = b.write(sum.handle);
+                b.cacheBy(1);
+            },
+            kDispatch);
         executor.execute();
-        EXPECT_EQ(status("add"), PassStatus::Ran) << "its input is what it wrote in the frame before";
+        EXPECT_EQ(status("add"), PassStatus::Ran)
+            << "its input is what it wrote in the frame before";
     }
 }
 
@@ -230,7 +249,8 @@ TEST_F(FrameGraphCache, AResultThatNobodyAsksForIsGivenUp) {
     executor.beginFrame();
     show(cached("made", 1));
     executor.execute();
-    for (uint64_t i = 0; i <= PersistentTable::kFramesKept; ++i) executor.beginFrame(), executor.execute();
+    for (uint64_t i = 0; i <= PersistentTable::kFramesKept; ++i)
+        executor.beginFrame(), executor.execute();
     for (const PersistentEntry& entry : executor.persistent.entries()) EXPECT_FALSE(entry.alive);
     executor.beginFrame();
     show(cached("made", 1));

@@ -23,21 +23,28 @@ struct FrameGraphCompile : ::testing::Test {
     FrameGraphImpl& graph = executor.beginFrame();
 
     TextureHandle produce(const char* name) {
-        return graph.addPass<Data>(name, [&](Builder& b, Data& d) { d.out = b.create(name, kColor); }, kDispatch).out;
+        return graph
+            .addPass<Data>(
+                name, [&](Builder& b, Data& d) { d.out = b.create(name, kColor); }, kDispatch)
+            .out;
     }
     TextureHandle filter(const char* name, TextureHandle in) {
         return graph
-            .addPass<Data>(name, [&](Builder& b, Data& d) { d.in = b.read(in), d.out = b.create(name, kColor); }, kDispatch)
+            .addPass<Data>(
+                name,
+                [&](Builder& b, Data& d) { d.in = b.read(in), d.out = b.create(name, kColor); },
+                kDispatch)
             .out;
     }
     TextureHandle modify(const char* name, TextureHandle in, bool skipped = false) {
         return graph
-            .addPass<Data>(name,
-                           [&](Builder& b, Data& d) {
-                               d.out = b.write(in);
-                               if (skipped) b.skip("no medium in the scene");
-                           },
-                           kDispatch)
+            .addPass<Data>(
+                name,
+                [&](Builder& b, Data& d) {
+                    d.out = b.write(in);
+                    if (skipped) b.skip("no medium in the scene");
+                },
+                kDispatch)
             .out;
     }
     std::vector<std::string> ranNames() {
@@ -54,16 +61,19 @@ TEST_F(FrameGraphCompile, OnlyWhatTheOutputsNeedRunsInOrderOfDeclaration) {
     graph.markOutput(filter("c", filter("b", a)));
     executor.execute();
     EXPECT_THAT(ranNames(), ElementsAre("a", "b", "c"));
-    EXPECT_THAT(executor.calls, ElementsAre("a: compute x.comp", "a: dispatch 1 1 1", "b: compute x.comp", "b: dispatch 1 1 1",
-                                            "c: compute x.comp", "c: dispatch 1 1 1"));
+    EXPECT_THAT(executor.calls,
+                ElementsAre("a: compute x.comp", "a: dispatch 1 1 1", "b: compute x.comp",
+                            "b: dispatch 1 1 1", "c: compute x.comp", "c: dispatch 1 1 1"));
     EXPECT_EQ(statusOf(executor.compiled, "unused"), PassStatus::Culled);
-    EXPECT_EQ(passNamed(executor.compiled, "unused").reason, "only passes that do not run read what it writes");
+    EXPECT_EQ(passNamed(executor.compiled, "unused").reason,
+              "only passes that do not run read what it writes");
     EXPECT_EQ(passNamed(executor.compiled, "unused.too").reason, "nobody reads unused.too");
 }
 
 TEST_F(FrameGraphCompile, NothingIsNeededWithoutOutputsUnlessItHasSideEffects) {
     const TextureHandle a = produce("a");
-    graph.addPass<Data>("readback", [&](Builder& b, Data& d) { d.in = b.read(a), b.sideEffect(); }, kDispatch);
+    graph.addPass<Data>(
+        "readback", [&](Builder& b, Data& d) { d.in = b.read(a), b.sideEffect(); }, kDispatch);
     produce("b");
     executor.execute();
     EXPECT_THAT(ranNames(), ElementsAre("a", "readback"));
@@ -104,7 +114,11 @@ TEST_F(FrameGraphCompile, ASkippedPassLeavesTheContentBefore) {
 TEST_F(FrameGraphCompile, InputsOfASkippedPassAreNotMade) {
     const TextureHandle costly = produce("costly");
     const Data& skipped = graph.addPass<Data>(
-        "skipped", [&](Builder& b, Data& d) { b.skip("no"), d.in = b.read(costly), d.out = b.create("s", kColor); }, kDispatch);
+        "skipped",
+        [&](Builder& b, Data& d) {
+            b.skip("no"), d.in = b.read(costly), d.out = b.create("s", kColor);
+        },
+        kDispatch);
     graph.markOutput(filter("reader", skipped.out));
     executor.execute();
     EXPECT_THAT(ranNames(), ElementsAre("reader"));
@@ -113,8 +127,9 @@ TEST_F(FrameGraphCompile, InputsOfASkippedPassAreNotMade) {
 }
 
 TEST_F(FrameGraphCompile, WritingOverSomethingAbsentStartsFromNothing) {
-    const Data& skipped =
-        graph.addPass<Data>("skipped", [&](Builder& b, Data& d) { b.skip("no"), d.out = b.create("s", kColor); }, kDispatch);
+    const Data& skipped = graph.addPass<Data>(
+        "skipped", [&](Builder& b, Data& d) { b.skip("no"), d.out = b.create("s", kColor); },
+        kDispatch);
     graph.markOutput(modify("late", skipped.out));
     executor.execute();
     const CompiledResource& s = resourceNamed(executor.compiled, "s");
@@ -136,14 +151,20 @@ TEST_F(FrameGraphCompile, HistoryAdvancesOnlyWhenItIsWritten) {
     const auto frame = [&](bool write) {
         executor.beginFrame();
         const TextureHistory h = graph.historyTexture("h", kColor);
-        graph.addPass<Data>("use", [&](Builder& b, Data& d) { d.in = b.read(h.previous), b.sideEffect(); }, kDispatch);
+        graph.addPass<Data>(
+            "use", [&](Builder& b, Data& d) { d.in = b.read(h.previous), b.sideEffect(); },
+            kDispatch);
         const TextureHandle current = modify("update", h.current, !write);
-        graph.addPass<Data>("show", [&](Builder& b, Data& d) { d.in = b.read(current), b.sideEffect(); }, kDispatch);
+        graph.addPass<Data>(
+            "show", [&](Builder& b, Data& d) { d.in = b.read(current), b.sideEffect(); },
+            kDispatch);
         executor.execute();
         EXPECT_TRUE(executor.compiled.errors.empty());
         return h.wasReset;
     };
-    const auto half = [&](const char* name) { return resourceNamed(executor.compiled, name).persistent; };
+    const auto half = [&](const char* name) {
+        return resourceNamed(executor.compiled, name).persistent;
+    };
     EXPECT_TRUE(frame(false)) << "nothing yet";
     EXPECT_TRUE(resourceNamed(executor.compiled, "h.previous").clearFirst);
     EXPECT_NE(resourceNamed(executor.compiled, "h").aliasOf, kNoIndex) << "reads as the previous";
@@ -166,7 +187,9 @@ TEST_F(FrameGraphCompile, ReadingThePastMakesTheNextPast) {
         executor.beginFrame();
         const TextureHistory h = graph.historyTexture("h", kColor);
         if (readsPrevious)
-            graph.addPass<Data>("use", [&](Builder& b, Data& d) { d.in = b.read(h.previous), b.sideEffect(); }, kDispatch);
+            graph.addPass<Data>(
+                "use", [&](Builder& b, Data& d) { d.in = b.read(h.previous), b.sideEffect(); },
+                kDispatch);
         modify("update", h.current);
         executor.execute();
         return statusOf(executor.compiled, "update");
@@ -187,14 +210,17 @@ TEST_F(FrameGraphCompile, ResourcesThatOutliveTheFrameStartAnewWhenTheirSizeChan
     EXPECT_FALSE(wasReset(4));
     EXPECT_TRUE(wasReset(8));
     EXPECT_FALSE(wasReset(8));
-    for (uint64_t i = 0; i <= PersistentTable::kFramesKept; ++i) executor.beginFrame(), executor.execute();
+    for (uint64_t i = 0; i <= PersistentTable::kFramesKept; ++i)
+        executor.beginFrame(), executor.execute();
     EXPECT_TRUE(wasReset(8)) << "forgotten when nobody asks for it";
 }
 
 TEST_F(FrameGraphCompile, SkipsAndCullingAgreeWithAWalkFromTheOutputsOnRandomGraphs) {
     // An independent statement of what must run: a pass is needed when an output, or a needed pass, uses what it made.
     uint32_t state = 12345;
-    const auto random = [&](uint32_t n) { return (state = state * 1664525u + 1013904223u) / 65536u % n; };
+    const auto random = [&](uint32_t n) {
+        return (state = state * 1664525u + 1013904223u) / 65536u % n;
+    };
     for (int trial = 0; trial < 50; ++trial) {
         executor.beginFrame();
         const uint32_t count = 2 + random(30);
@@ -206,13 +232,15 @@ TEST_F(FrameGraphCompile, SkipsAndCullingAgreeWithAWalkFromTheOutputsOnRandomGra
             for (uint32_t k = i == 0 ? 0 : random(3); k > 0; --k) inputs[i].push_back(random(i));
             const std::string name = "p" + std::to_string(i);
             made.push_back(graph
-                               .addPass<Data>(name.c_str(),
-                                              [&](Builder& b, Data& d) {
-                                                  for (const uint32_t input : inputs[i]) d.in = b.read(made[input]);
-                                                  if (skipped[i]) b.skip("random");
-                                                  d.out = b.create(name.c_str(), kColor);
-                                              },
-                                              kDispatch)
+                               .addPass<Data>(
+                                   name.c_str(),
+                                   [&](Builder& b, Data& d) {
+                                       for (const uint32_t input : inputs[i])
+                                           d.in = b.read(made[input]);
+                                       if (skipped[i]) b.skip("random");
+                                       d.out = b.create(name.c_str(), kColor);
+                                   },
+                                   kDispatch)
                                .out);
         }
         const uint32_t output = random(count);
@@ -239,7 +267,9 @@ TEST_F(FrameGraphCompile, ThousandPassesCompileQuickly) {
         graph.markOutput(color);
         const auto start = std::chrono::steady_clock::now();
         executor.compile();
-        best = std::min(best, std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count());
+        best = std::min(best, std::chrono::duration<double, std::milli>(
+                                  std::chrono::steady_clock::now() - start)
+                                  .count());
     }
     EXPECT_EQ(executor.compiled.slots.size(), 2u) << "two textures take turns";
     std::printf("1000 passes compile in %.3f ms, %.4f ms per 50 passes\n", best, best / 20);

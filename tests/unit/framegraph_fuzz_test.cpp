@@ -50,7 +50,9 @@ private:
             if (random(8) == 0) key = random(3);
         for (uint64_t& version : importVersions_)
             if (random(5) == 0) version = random(4);
-        if (random(25) == 0) executor_.persistent.resetHistory(), pastOfHistory_ = kNothing, persistents_ = {kNothing, kNothing};
+        if (random(25) == 0)
+            executor_.persistent.resetHistory(), pastOfHistory_ = kNothing,
+                                                 persistents_ = {kNothing, kNothing};
         Fuzz structure(shape_);
         available_.clear();
         overwritten_.clear();
@@ -59,12 +61,14 @@ private:
         for (uint64_t i = 0; i < passes; ++i) addPass(i, structure);
         if (structure.random(2) == 0) addHistoryPass();
         for (const TextureHandle handle : available_)
-            if (!overwritten_.contains(handle.resource * 1000 + handle.version) && random(3) == 0) graph().markOutput(handle);
+            if (!overwritten_.contains(handle.resource * 1000 + handle.version) && random(3) == 0)
+                graph().markOutput(handle);
     }
 
     void addOutside() {
         for (uint32_t i = 0; i < kImports; ++i) {
-            const TextureHandle handle = graph().importTexture("import", StaticTexture{i + 1}, kShapes[0], importVersions_[i]);
+            const TextureHandle handle = graph().importTexture("import", StaticTexture{i + 1},
+                                                               kShapes[0], importVersions_[i]);
             ideal_[graph().versionOf(handle.resource, 0)] = mixHash(i, importVersions_[i]);
             statics_[i + 1] = mixHash(i, importVersions_[i]);
             available_.push_back(handle);
@@ -87,7 +91,8 @@ private:
         return origin == ResourceOrigin::Imported || origin == ResourceOrigin::HistoryPrevious;
     }
     uint64_t idealOf(TextureHandle handle) {
-        const uint32_t version = graph().contentVersion(graph().versionOf(handle.resource, handle.version));
+        const uint32_t version =
+            graph().contentVersion(graph().versionOf(handle.resource, handle.version));
         return graph().versions()[version].absent ? kNothing : ideal_[version];
     }
     TextureHandle pick(Fuzz& structure) {
@@ -100,7 +105,8 @@ private:
     /// A pass that reads up to two textures, creates one or writes over one, and may be cached or skipped.
     void addPass(uint64_t index, Fuzz& structure) {
         const std::string name = "pass" + std::to_string(index);
-        const bool cacheable = structure.random(2) == 0, sideEffect = structure.random(8) == 0, creates = structure.random(3) != 0;
+        const bool cacheable = structure.random(2) == 0, sideEffect = structure.random(8) == 0,
+                   creates = structure.random(3) != 0;
         const TextureDesc shape = kShapes[structure.random(2)];
         const uint64_t reads = structure.random(3);
         const bool skip = (keys_[index % 4] + index) % 5 == 0;
@@ -111,11 +117,15 @@ private:
             [&](Builder& b, Data&) {
                 std::vector<TextureHandle> in;
                 for (uint64_t i = 0; i < reads; ++i) in.push_back(pick(structure));
-                for (const TextureHandle handle : in) content = mixHash(content, idealOf(b.read(handle)));
+                for (const TextureHandle handle : in)
+                    content = mixHash(content, idealOf(b.read(handle)));
                 if (!creates) over = pick(structure);
                 if (!creates && isOutside(over)) over = {};
                 // A cached pass may not depend on old content from outside the frame that it does not read.
-                if (over && graph().versions()[graph().versionOf(over.resource, over.version)].writer == kNoIndex && cacheable)
+                if (over &&
+                    graph().versions()[graph().versionOf(over.resource, over.version)].writer ==
+                        kNoIndex &&
+                    cacheable)
                     content = mixHash(content, 5);
                 else if (over)
                     content = mixHash(content, idealOf(over));
@@ -143,15 +153,20 @@ private:
                 b.sideEffect();
             },
             [](const Data&, PassContext&) {});
-        if (!skip) ideal_[graph().versionOf(out.resource, out.version)] = mixHash(pastOfHistory_, 1);
+        if (!skip)
+            ideal_[graph().versionOf(out.resource, out.version)] = mixHash(pastOfHistory_, 1);
         available_.push_back(out);
     }
 
     uint64_t& storageAt(StoragePlace place) {
-        const PersistentEntry* entry = place.kind == PlaceKind::Persistent ? &executor_.persistent.entry(place.index / 2) : nullptr;
+        const PersistentEntry* entry = place.kind == PlaceKind::Persistent
+                                           ? &executor_.persistent.entry(place.index / 2)
+                                           : nullptr;
         if (place.kind == PlaceKind::Slot) return slots_[place.index];
         if (place.kind == PlaceKind::Static) return statics_[place.index];
-        return persistentStorage_.try_emplace({place.index, entry ? entry->generation : 0}, kGarbage).first->second;
+        return persistentStorage_
+            .try_emplace({place.index, entry ? entry->generation : 0}, kGarbage)
+            .first->second;
     }
     uint64_t contentOf(uint32_t resource, uint32_t number) {
         const StoragePlace place = placeOf(graph(), executor_.compiled, resource, number);
@@ -161,7 +176,8 @@ private:
     void simulate() {
         const CompiledGraph& compiled = executor_.compiled;
         slots_.assign(compiled.slots.size(), kGarbage);
-        for (const uint32_t index : compiled.list(compiled.untouchedOutputs)) storageAt(placeOf(compiled, index)) = kNothing;
+        for (const uint32_t index : compiled.list(compiled.untouchedOutputs))
+            storageAt(placeOf(compiled, index)) = kNothing;
         for (uint32_t i = 0; i < compiled.passes.size(); ++i) {
             const CompiledPass& pass = compiled.passes[i];
             ran += pass.status == PassStatus::Ran;
@@ -174,8 +190,11 @@ private:
         for (uint32_t i = 1; i < compiled.resources.size(); ++i) {
             const CompiledResource& resource = compiled.resources[i];
             if (!resource.written) continue;
-            uint64_t& past = resource.name == "p0" ? persistents_[0] : resource.name == "p1" ? persistents_[1] : pastOfHistory_;
-            if (resource.origin == ResourceOrigin::Persistent || resource.origin == ResourceOrigin::HistoryCurrent)
+            uint64_t& past = resource.name == "p0"   ? persistents_[0]
+                             : resource.name == "p1" ? persistents_[1]
+                                                     : pastOfHistory_;
+            if (resource.origin == ResourceOrigin::Persistent ||
+                resource.origin == ResourceOrigin::HistoryCurrent)
                 past = storageAt(placeOf(compiled, i));
         }
     }
@@ -183,7 +202,9 @@ private:
     void simulatePass(const CompiledPass& pass) {
         const CompiledGraph& compiled = executor_.compiled;
         for (const uint32_t index : compiled.list(pass.acquires)) {
-            const uint32_t held = compiled.resources[index].aliasOf != kNoIndex ? compiled.resources[index].aliasOf : index;
+            const uint32_t held = compiled.resources[index].aliasOf != kNoIndex
+                                      ? compiled.resources[index].aliasOf
+                                      : index;
             const bool fresh = compiled.resources[held].origin == ResourceOrigin::Transient;
             if (fresh) storageAt(placeOf(compiled, held)) = kGarbage;
             if (compiled.resources[held].clearFirst) storageAt(placeOf(compiled, held)) = kNothing;
@@ -193,24 +214,30 @@ private:
             const VersionRecord& version = graph().versions()[uses[k].version];
             if (!isWrite(uses[k].access))
                 expectIdeal(uses[k].version, pass.name);
-            else if (version.previous != kNoIndex && graph().resources()[version.resource].origin != ResourceOrigin::HistoryCurrent)
+            else if (version.previous != kNoIndex &&
+                     graph().resources()[version.resource].origin != ResourceOrigin::HistoryCurrent)
                 expectOldContent(version, pass.name);
         }
         for (uint32_t k = pass.uses.first; k < pass.uses.first + pass.uses.count; ++k)
-            if (isWrite(uses[k].access)) storageAt(placeOf(compiled, graph().versions()[uses[k].version].resource)) = ideal_[uses[k].version];
+            if (isWrite(uses[k].access))
+                storageAt(placeOf(compiled, graph().versions()[uses[k].version].resource)) =
+                    ideal_[uses[k].version];
     }
 
     void expectIdeal(uint32_t version, std::string_view who) {
         const VersionRecord& record = graph().versions()[version];
         const std::string_view name = graph().resources()[record.resource].name;
-        EXPECT_EQ(contentOf(record.resource, record.number), idealOf({record.resource, record.number}))
+        EXPECT_EQ(contentOf(record.resource, record.number),
+                  idealOf({record.resource, record.number}))
             << who << " reads version " << record.number << " of " << name;
     }
     /// What shows through a write: the version before, or nothing where that was absent.
     void expectOldContent(const VersionRecord& version, std::string_view who) {
         const VersionRecord& before = graph().versions()[version.previous];
-        EXPECT_EQ(storageAt(placeOf(executor_.compiled, version.resource)), idealOf({before.resource, before.number}))
-            << who << " writes over version " << before.number << " of " << graph().resources()[before.resource].name;
+        EXPECT_EQ(storageAt(placeOf(executor_.compiled, version.resource)),
+                  idealOf({before.resource, before.number}))
+            << who << " writes over version " << before.number << " of "
+            << graph().resources()[before.resource].name;
     }
 
     NullExecutor executor_;
@@ -221,7 +248,7 @@ private:
     uint64_t pastOfHistory_ = kNothing;
     TextureHistory history_{};
     std::vector<TextureHandle> available_;
-    std::set<uint32_t> overwritten_; // resource · 1000 + version
+    std::set<uint32_t> overwritten_;     // resource · 1000 + version
     std::map<uint32_t, uint64_t> ideal_; // by version index
     std::vector<uint64_t> slots_;
     std::map<uint32_t, uint64_t> statics_;
@@ -234,14 +261,17 @@ TEST(FrameGraphFuzz, RunningPassesReadWhatPureFunctionsSay) {
         const uint64_t seed = mixHash(test::seed(), trial);
         Fuzz fuzz(seed);
         for (int frame = 0; frame < 60; ++frame) {
-            SCOPED_TRACE("TYNDALL_SEED=" + std::to_string(test::seed()) + ", trial " + std::to_string(trial) + ", frame " + std::to_string(frame));
+            SCOPED_TRACE("TYNDALL_SEED=" + std::to_string(test::seed()) + ", trial " +
+                         std::to_string(trial) + ", frame " + std::to_string(frame));
             fuzz.frame();
             if (::testing::Test::HasFailure()) return fuzz.print();
         }
         ran += fuzz.ran, cached += fuzz.cached, skipped += fuzz.skipped, culled += fuzz.culled;
     }
-    std::printf("%d passes ran, %d were cached, %d skipped, %d culled\n", ran, cached, skipped, culled);
-    for (const int count : {ran, cached, skipped, culled}) EXPECT_GT(count, 500) << "every status must occur often";
+    std::printf("%d passes ran, %d were cached, %d skipped, %d culled\n", ran, cached, skipped,
+                culled);
+    for (const int count : {ran, cached, skipped, culled})
+        EXPECT_GT(count, 500) << "every status must occur often";
 }
 
 } // namespace

@@ -12,17 +12,26 @@ namespace tyndall::fg {
 
 class NullContext final : public PassContext {
 public:
-    explicit NullContext(const FrameGraphImpl& graph, std::vector<std::string>& calls) : graph_(graph), calls_(calls) {}
+    explicit NullContext(const FrameGraphImpl& graph, std::vector<std::string>& calls)
+        : graph_(graph), calls_(calls) {}
     uint32_t pass = 0;
 
-    void beginCompute(const char* shader, const Define*, uint32_t) override { note(std::string("compute ") + shader); }
+    void beginCompute(const char* shader, const Define*, uint32_t) override {
+        note(std::string("compute ") + shader);
+    }
     void beginRaster(const char* vertex, const char* fragment, const Define*, uint32_t) override {
         note(std::string("raster ") + vertex + " " + fragment);
     }
-    void bindTexture(const char* name, TextureHandle, int32_t, int32_t) override { note(std::string("bind ") + name); }
+    void bindTexture(const char* name, TextureHandle, int32_t, int32_t) override {
+        note(std::string("bind ") + name);
+    }
     void bindBuffer(const char* name, BufferHandle) override { note(std::string("bind ") + name); }
-    void bindStaticTexture(const char* name, StaticTexture) override { note(std::string("bind ") + name); }
-    void bindStaticBuffer(const char* name, StaticBuffer) override { note(std::string("bind ") + name); }
+    void bindStaticTexture(const char* name, StaticTexture) override {
+        note(std::string("bind ") + name);
+    }
+    void bindStaticBuffer(const char* name, StaticBuffer) override {
+        note(std::string("bind ") + name);
+    }
     void uniformBlock(const char* block, const void*, size_t bytes) override {
         note(std::string("block ") + block + " " + std::to_string(bytes));
     }
@@ -39,19 +48,31 @@ public:
     void viewport(int32_t, int32_t, int32_t, int32_t) override { note("viewport"); }
     void rasterState(const RasterState&) override { note("state"); }
     void draw(uint32_t, uint32_t, uint32_t) override { note("draw"); }
-    void drawGeometry(StaticGeometry, uint32_t, uint32_t, uint32_t, uint32_t) override { note("geometry"); }
+    void drawGeometry(StaticGeometry, uint32_t, uint32_t, uint32_t, uint32_t) override {
+        note("geometry");
+    }
     void clearTexture(TextureHandle, const float*) override { note("clear"); }
     void clearBuffer(BufferHandle, uint32_t) override { note("clear"); }
     void copyTexture(TextureHandle, TextureHandle) override { note("copy"); }
     void upload(BufferHandle, uint64_t, const void*, size_t) override { note("upload"); }
     void barrier(Access) override { note("barrier"); }
-    [[nodiscard]] TextureDesc desc(TextureHandle handle) const override { return graph_.desc(handle); }
-    [[nodiscard]] BufferDesc desc(BufferHandle handle) const override { return graph_.desc(handle); }
-    [[nodiscard]] bool isAbsent(TextureHandle handle) const override { return graph_.isAbsent(handle); }
-    [[nodiscard]] bool isAbsent(BufferHandle handle) const override { return graph_.isAbsent(handle); }
+    [[nodiscard]] TextureDesc desc(TextureHandle handle) const override {
+        return graph_.desc(handle);
+    }
+    [[nodiscard]] BufferDesc desc(BufferHandle handle) const override {
+        return graph_.desc(handle);
+    }
+    [[nodiscard]] bool isAbsent(TextureHandle handle) const override {
+        return graph_.isAbsent(handle);
+    }
+    [[nodiscard]] bool isAbsent(BufferHandle handle) const override {
+        return graph_.isAbsent(handle);
+    }
 
 private:
-    void note(const std::string& call) { calls_.push_back(std::string(graph_.passes()[pass].name) + ": " + call); }
+    void note(const std::string& call) {
+        calls_.push_back(std::string(graph_.passes()[pass].name) + ": " + call);
+    }
     const FrameGraphImpl& graph_;
     std::vector<std::string>& calls_;
 };
@@ -99,6 +120,8 @@ inline const CompiledResource& resourceNamed(const CompiledGraph& graph, std::st
         if (resource.name == name) return resource;
     failCheck("resourceNamed", name, __FILE__, __LINE__);
 }
-inline PassStatus statusOf(const CompiledGraph& graph, std::string_view name) { return passNamed(graph, name).status; }
+inline PassStatus statusOf(const CompiledGraph& graph, std::string_view name) {
+    return passNamed(graph, name).status;
+}
 
 } // namespace tyndall::fg

@@ -15,20 +15,30 @@ constexpr auto kNothing = [](const Data&, PassContext&) {};
 const TextureDesc kColor = texture2D(Format::RGBA32F, 8, 4); // 512 bytes
 
 // Values of the OpenGL 4.5 registry.
-constexpr uint32_t GL_TEXTURE_FETCH = 0x8, GL_SHADER_IMAGE = 0x20, GL_COMMAND = 0x40, GL_UNIFORM = 0x4, GL_VERTEX = 0x1, GL_ELEMENT = 0x2,
-                   GL_TEXTURE_UPDATE = 0x100, GL_BUFFER_UPDATE = 0x200, GL_FRAMEBUFFER = 0x400, GL_SHADER_STORAGE = 0x2000;
+constexpr uint32_t GL_TEXTURE_FETCH = 0x8, GL_SHADER_IMAGE = 0x20, GL_COMMAND = 0x40,
+                   GL_UNIFORM = 0x4, GL_VERTEX = 0x1, GL_ELEMENT = 0x2, GL_TEXTURE_UPDATE = 0x100,
+                   GL_BUFFER_UPDATE = 0x200, GL_FRAMEBUFFER = 0x400, GL_SHADER_STORAGE = 0x2000;
 
 struct FrameGraphStorage : ::testing::Test {
     NullExecutor executor;
     FrameGraphImpl& graph = executor.beginFrame();
 
-    TextureHandle produce(const char* name, const TextureDesc& desc = kColor, Access access = Access::StorageWrite) {
-        return graph.addPass<Data>(name, [&](Builder& b, Data& d) { d.out = b.create(name, desc, access); }, kNothing).out;
-    }
-    TextureHandle filter(const char* name, TextureHandle in, Access access = Access::Sampled, Access output = Access::StorageWrite) {
+    TextureHandle produce(const char* name, const TextureDesc& desc = kColor,
+                          Access access = Access::StorageWrite) {
         return graph
-            .addPass<Data>(name, [&](Builder& b, Data& d) { d.in = b.read(in, access), d.out = b.create(name, kColor, output); },
-                           kNothing)
+            .addPass<Data>(
+                name, [&](Builder& b, Data& d) { d.out = b.create(name, desc, access); }, kNothing)
+            .out;
+    }
+    TextureHandle filter(const char* name, TextureHandle in, Access access = Access::Sampled,
+                         Access output = Access::StorageWrite) {
+        return graph
+            .addPass<Data>(
+                name,
+                [&](Builder& b, Data& d) {
+                    d.in = b.read(in, access), d.out = b.create(name, kColor, output);
+                },
+                kNothing)
             .out;
     }
     uint32_t slot(const char* name) { return resourceNamed(executor.compiled, name).slot; }
@@ -49,7 +59,11 @@ TEST_F(FrameGraphStorage, DifferentShapesDoNotShare) {
     TextureHandle color = produce("a");
     color = filter("b", color);
     const Data& other = graph.addPass<Data>(
-        "c", [&](Builder& b, Data& d) { d.in = b.read(color), d.out = b.create("c", texture2D(Format::RGBA16F, 8, 4)); }, kNothing);
+        "c",
+        [&](Builder& b, Data& d) {
+            d.in = b.read(color), d.out = b.create("c", texture2D(Format::RGBA16F, 8, 4));
+        },
+        kNothing);
     graph.markOutput(other.out);
     executor.execute();
     EXPECT_EQ(executor.compiled.slots.size(), 3u);
@@ -65,28 +79,40 @@ TEST_F(FrameGraphStorage, LifetimesRunFromTheFirstToTheLastRunningUser) {
     const CompiledResource& resource = resourceNamed(executor.compiled, "a");
     EXPECT_EQ(resource.firstPass, 0u);
     EXPECT_EQ(resource.lastPass, 2u);
-    EXPECT_EQ(resourceNamed(executor.compiled, "b").lastPass, executor.compiled.passes.size()) << "outputs live to the end";
+    EXPECT_EQ(resourceNamed(executor.compiled, "b").lastPass, executor.compiled.passes.size())
+        << "outputs live to the end";
 }
 
 TEST_F(FrameGraphStorage, NoTwoLivingResourcesShareStorageOnRandomGraphs) {
     uint32_t state = 99;
-    const auto random = [&](uint32_t n) { return (state = state * 1664525u + 1013904223u) / 65536u % n; };
+    const auto random = [&](uint32_t n) {
+        return (state = state * 1664525u + 1013904223u) / 65536u % n;
+    };
     for (int trial = 0; trial < 50; ++trial) {
         executor.beginFrame();
         std::vector<TextureHandle> made{produce("first")};
         for (uint32_t i = 1; i < 25; ++i) {
             const TextureHandle in = made[random(uint32_t(made.size()))];
             const TextureDesc desc = texture2D(Format::R32F, 4 + int(random(2)), 4);
-            made.push_back(graph.addPass<Data>("p", [&](Builder& b, Data& d) { d.in = b.read(in), d.out = b.create("t", desc); }, kNothing).out);
+            made.push_back(graph
+                               .addPass<Data>(
+                                   "p",
+                                   [&](Builder& b, Data& d) {
+                                       d.in = b.read(in), d.out = b.create("t", desc);
+                                   },
+                                   kNothing)
+                               .out);
             if (random(4) == 0) graph.markOutput(made.back());
         }
         executor.execute();
         const auto& resources = executor.compiled.resources;
         for (size_t i = 1; i < resources.size(); ++i)
             for (size_t k = i + 1; k < resources.size(); ++k) {
-                if (resources[i].slot == kNoIndex || resources[i].slot != resources[k].slot) continue;
+                if (resources[i].slot == kNoIndex || resources[i].slot != resources[k].slot)
+                    continue;
                 EXPECT_EQ(resources[i].texture, resources[k].texture);
-                EXPECT_TRUE(resources[i].lastPass < resources[k].firstPass || resources[k].lastPass < resources[i].firstPass);
+                EXPECT_TRUE(resources[i].lastPass < resources[k].firstPass ||
+                            resources[k].lastPass < resources[i].firstPass);
             }
     }
 }
@@ -110,19 +136,25 @@ TEST_F(FrameGraphStorage, EveryAcquireHasItsPassAndEveryTransientIsReleasedOnce)
 }
 
 TEST_F(FrameGraphStorage, KeptAndPersistentResourcesTakeNoPoolSlot) {
-    const Data& cached =
-        graph.addPass<Data>("cached", [](Builder& b, Data& d) { d.out = b.create("kept", kColor), b.cacheBy(1); }, kNothing);
+    const Data& cached = graph.addPass<Data>(
+        "cached", [](Builder& b, Data& d) { d.out = b.create("kept", kColor), b.cacheBy(1); },
+        kNothing);
     const PersistentTexture sum = graph.persistentTexture("sum", kColor);
-    graph.addPass<Data>("add", [&](Builder& b, Data& d) { d.in = b.read(cached.out), d.out = b.write(sum.handle); }, kNothing);
+    graph.addPass<Data>(
+        "add", [&](Builder& b, Data& d) { d.in = b.read(cached.out), d.out = b.write(sum.handle); },
+        kNothing);
     executor.execute();
     EXPECT_TRUE(executor.compiled.slots.empty());
-    EXPECT_NE(resourceNamed(executor.compiled, "kept").persistent, resourceNamed(executor.compiled, "sum").persistent);
+    EXPECT_NE(resourceNamed(executor.compiled, "kept").persistent,
+              resourceNamed(executor.compiled, "sum").persistent);
 }
 
 // --- barriers ---
 
 TEST(BarrierTable, ShaderWritesNeedTheBitOfTheNextAccess) {
-    const auto bits = [](Access next, bool buffer) { return barrierBits(Access::StorageWrite, next, buffer); };
+    const auto bits = [](Access next, bool buffer) {
+        return barrierBits(Access::StorageWrite, next, buffer);
+    };
     EXPECT_EQ(bits(Access::Sampled, false), GL_TEXTURE_FETCH);
     EXPECT_EQ(bits(Access::StorageRead, false), GL_SHADER_IMAGE);
     EXPECT_EQ(bits(Access::StorageWrite, false), GL_SHADER_IMAGE);
@@ -133,16 +165,19 @@ TEST(BarrierTable, ShaderWritesNeedTheBitOfTheNextAccess) {
     EXPECT_EQ(bits(Access::Vertex, true), GL_VERTEX | GL_ELEMENT);
     EXPECT_EQ(bits(Access::TransferRead, false), GL_TEXTURE_UPDATE);
     EXPECT_EQ(bits(Access::TransferWrite, true), GL_BUFFER_UPDATE);
-    for (const Access target : {Access::ColorTarget, Access::DepthTarget, Access::DepthRead}) EXPECT_EQ(bits(target, false), GL_FRAMEBUFFER);
+    for (const Access target : {Access::ColorTarget, Access::DepthTarget, Access::DepthRead})
+        EXPECT_EQ(bits(target, false), GL_FRAMEBUFFER);
 }
 
 TEST(BarrierTable, CoherentAccessesNeedNoneAmongThemselves) {
     for (uint32_t previous = 0; previous <= uint32_t(Access::TransferWrite); ++previous)
         for (uint32_t next = 0; next <= uint32_t(Access::TransferWrite); ++next)
             for (const bool buffer : {false, true}) {
-                const bool incoherent = Access(previous) == Access::StorageWrite || Access(next) == Access::StorageWrite;
+                const bool incoherent = Access(previous) == Access::StorageWrite ||
+                                        Access(next) == Access::StorageWrite;
                 if (incoherent) continue;
-                EXPECT_EQ(barrierBits(Access(previous), Access(next), buffer), 0u) << previous << " " << next;
+                EXPECT_EQ(barrierBits(Access(previous), Access(next), buffer), 0u)
+                    << previous << " " << next;
             }
 }
 
@@ -189,18 +224,31 @@ TEST_F(FrameGraphStorage, SharedStorageIsOrderedAcrossItsNames) {
 }
 
 TEST_F(FrameGraphStorage, ReadModifyWriteChainsAreOrdered) {
-    const Data& first = graph.addPass<Data>("first", [](Builder& b, Data& d) { d.bufferOut = b.create("sum", BufferDesc{64}); }, kNothing);
-    const Data& second = graph.addPass<Data>("second", [&](Builder& b, Data& d) { d.bufferOut = b.write(first.bufferOut); }, kNothing);
-    graph.addPass<Data>("draw", [&](Builder& b, Data& d) { d.bufferIn = b.read(second.bufferOut, Access::Indirect), b.sideEffect(); }, kNothing);
+    const Data& first = graph.addPass<Data>(
+        "first", [](Builder& b, Data& d) { d.bufferOut = b.create("sum", BufferDesc{64}); },
+        kNothing);
+    const Data& second = graph.addPass<Data>(
+        "second", [&](Builder& b, Data& d) { d.bufferOut = b.write(first.bufferOut); }, kNothing);
+    graph.addPass<Data>(
+        "draw",
+        [&](Builder& b, Data& d) {
+            d.bufferIn = b.read(second.bufferOut, Access::Indirect), b.sideEffect();
+        },
+        kNothing);
     executor.execute();
     EXPECT_EQ(barriers("second"), GL_SHADER_STORAGE);
     EXPECT_EQ(barriers("draw"), GL_COMMAND);
 }
 
 TEST_F(FrameGraphStorage, OneImportUnderTwoNamesIsOneStorage) {
-    const BufferHandle a = graph.importBuffer("a", StaticBuffer{5}, {64}, 1), b = graph.importBuffer("b", StaticBuffer{5}, {64}, 1);
-    graph.addPass<Data>("write", [&](Builder& builder, Data& d) { d.bufferOut = builder.write(a); }, kNothing);
-    graph.addPass<Data>("read", [&](Builder& builder, Data& d) { d.bufferIn = builder.read(b), builder.sideEffect(); }, kNothing);
+    const BufferHandle a = graph.importBuffer("a", StaticBuffer{5}, {64}, 1),
+                       b = graph.importBuffer("b", StaticBuffer{5}, {64}, 1);
+    graph.addPass<Data>(
+        "write", [&](Builder& builder, Data& d) { d.bufferOut = builder.write(a); }, kNothing);
+    graph.addPass<Data>(
+        "read",
+        [&](Builder& builder, Data& d) { d.bufferIn = builder.read(b), builder.sideEffect(); },
+        kNothing);
     executor.execute();
     EXPECT_EQ(barriers("read"), GL_SHADER_STORAGE);
 }

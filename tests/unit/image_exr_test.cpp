@@ -17,7 +17,8 @@ Image picture(int width, int height, int channels, float scale = 1) {
     Image image(width, height, channels);
     std::mt19937 random(7);
     std::uniform_real_distribution<float> exponent(-20, 15);
-    for (float& value : image.pixels) value = scale * std::exp2(exponent(random)) * (random() % 8 ? 1.0f : -1.0f);
+    for (float& value : image.pixels)
+        value = scale * std::exp2(exponent(random)) * (random() % 8 ? 1.0f : -1.0f);
     return image;
 }
 
@@ -29,7 +30,10 @@ const ImageLayer* find(const ExrFile& file, const std::string& name) {
 
 TEST(Exr, FloatRoundTripIsExactForEveryLayerAndKeepsOrientation) {
     const fs::path path = test::scratchDir("exr") / "a.exr";
-    const std::vector<ImageLayer> layers = {{"LSE", picture(37, 21, 3, 2)}, {"", picture(37, 21, 3)}, {"depth", picture(37, 21, 1)}, {"rgba", picture(37, 21, 4)}};
+    const std::vector<ImageLayer> layers = {{"LSE", picture(37, 21, 3, 2)},
+                                            {"", picture(37, 21, 3)},
+                                            {"depth", picture(37, 21, 1)},
+                                            {"rgba", picture(37, 21, 4)}};
     ASSERT_TRUE(writeExr(path, layers, {{"scene", "a \"quoted\" scene"}, {"settings", ""}}).ok());
     const Result<ExrFile> file = readExr(path);
     ASSERT_TRUE(file.ok()) << file.message();
@@ -52,13 +56,17 @@ TEST(Exr, HalfKeepsElevenBits) {
     ASSERT_TRUE(writeExr(path, std::vector<ImageLayer>{{"", image}}, {}, ExrDepth::Half).ok());
     const Result<ExrFile> file = readExr(path);
     ASSERT_TRUE(file.ok()) << file.message();
-    for (size_t i = 0; i < image.pixels.size(); ++i) // 11 significant bits, rounded: half a unit in the last place
-        EXPECT_NEAR(file->layers[0].image.pixels[i], image.pixels[i], std::ldexp(image.pixels[i], -11));
+    for (size_t i = 0; i < image.pixels.size();
+         ++i) // 11 significant bits, rounded: half a unit in the last place
+        EXPECT_NEAR(file->layers[0].image.pixels[i], image.pixels[i],
+                    std::ldexp(image.pixels[i], -11));
 }
 
 TEST(Exr, OneFlippedBitOrACutNeverCrashesAndACutIsRefused) {
     const fs::path folder = test::scratchDir("exr-damage");
-    ASSERT_TRUE(writeExr(folder / "good.exr", std::vector<ImageLayer>{{"", picture(40, 40, 3)}}, {{"scene", "x"}}).ok());
+    ASSERT_TRUE(writeExr(folder / "good.exr", std::vector<ImageLayer>{{"", picture(40, 40, 3)}},
+                         {{"scene", "x"}})
+                    .ok());
     const std::string good = readFile(folder / "good.exr").value();
     std::mt19937_64 random(test::seed());
     for (int i = 0; i < 300; ++i) {
@@ -69,9 +77,11 @@ TEST(Exr, OneFlippedBitOrACutNeverCrashesAndACutIsRefused) {
         ASSERT_TRUE(writeFileAtomically(folder / "bad.exr", bad).ok());
         const Result<ExrFile> file = readExr(folder / "bad.exr");
         if (file.ok()) continue; // a flipped pixel is still a picture
-        EXPECT_THAT(file.message(), ::testing::HasSubstr("bad.exr")) << "seed " << test::seed() << " case " << i;
+        EXPECT_THAT(file.message(), ::testing::HasSubstr("bad.exr"))
+            << "seed " << test::seed() << " case " << i;
     }
-    for (size_t keep : {size_t(0), size_t(1), size_t(4), size_t(100), good.size() / 2, good.size() - 40}) {
+    for (size_t keep :
+         {size_t(0), size_t(1), size_t(4), size_t(100), good.size() / 2, good.size() - 40}) {
         ASSERT_TRUE(writeFileAtomically(folder / "cut.exr", good.substr(0, keep)).ok());
         const Result<ExrFile> file = readExr(folder / "cut.exr");
         ASSERT_FALSE(file.ok()) << keep << " bytes of " << good.size();
@@ -82,11 +92,13 @@ TEST(Exr, OneFlippedBitOrACutNeverCrashesAndACutIsRefused) {
 
 TEST(Exr, AHeaderThatPromisesTooMuchIsRefusedBeforeItsMemoryIsTaken) {
     const fs::path folder = test::scratchDir("exr-bomb");
-    ASSERT_TRUE(writeExr(folder / "good.exr", std::vector<ImageLayer>{{"", Image(16, 16, 3)}}).ok());
+    ASSERT_TRUE(
+        writeExr(folder / "good.exr", std::vector<ImageLayer>{{"", Image(16, 16, 3)}}).ok());
     std::string bomb = readFile(folder / "good.exr").value();
     // An attribute is its name, its type, a 4-byte size and its value: the box (0,0)-(15,15) becomes (0,0)-(16383,16383).
     for (const char* window : {"dataWindow", "displayWindow"}) {
-        const size_t value = bomb.find(std::string(window) + '\0' + "box2i") + std::string(window).size() + 1 + 6 + 4;
+        const size_t value = bomb.find(std::string(window) + '\0' + "box2i") +
+                             std::string(window).size() + 1 + 6 + 4;
         for (size_t corner : {value + 8, value + 12}) {
             bomb[corner] = char(0xff);
             bomb[corner + 1] = char(0x3f);
@@ -101,7 +113,9 @@ TEST(Exr, AHeaderThatPromisesTooMuchIsRefusedBeforeItsMemoryIsTaken) {
 
 TEST(Exr, LayersOfDifferentSizesAreAProgrammersError) {
     const fs::path path = test::scratchDir("exr-check") / "a.exr";
-    EXPECT_THROW((void)writeExr(path, std::vector<ImageLayer>{{"", Image(2, 2, 3)}, {"LE", Image(2, 3, 3)}}), CheckFailure);
+    EXPECT_THROW(
+        (void)writeExr(path, std::vector<ImageLayer>{{"", Image(2, 2, 3)}, {"LE", Image(2, 3, 3)}}),
+        CheckFailure);
     EXPECT_THROW((void)writeExr(path, {}), CheckFailure);
     EXPECT_FALSE(fs::exists(path));
 }

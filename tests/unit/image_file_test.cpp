@@ -22,7 +22,9 @@ namespace {
 namespace fs = std::filesystem;
 using ::testing::HasSubstr;
 
-size_t filesIn(const fs::path& folder) { return size_t(std::distance(fs::directory_iterator(folder), fs::directory_iterator())); }
+size_t filesIn(const fs::path& folder) {
+    return size_t(std::distance(fs::directory_iterator(folder), fs::directory_iterator()));
+}
 
 struct FileTest : ::testing::Test {
     fs::path folder = test::scratchDir("file");
@@ -47,7 +49,8 @@ TEST_F(FileTest, FollowsASymbolicLinkToTheFileBehindIt) {
 }
 
 TEST_F(FileTest, FailuresNameTheFileAndTheReason) {
-    EXPECT_THAT(writeFileAtomically(folder / "no" / "such" / "a.txt", "x").message(), HasSubstr((folder / "no/such/a.txt").string() + "': No such file"));
+    EXPECT_THAT(writeFileAtomically(folder / "no" / "such" / "a.txt", "x").message(),
+                HasSubstr((folder / "no/such/a.txt").string() + "': No such file"));
     EXPECT_THAT(writeFileAtomically(folder, "x").message(), HasSubstr("Is a directory"));
     EXPECT_THAT(readFile(folder / "missing").message(), HasSubstr("No such file"));
     EXPECT_THAT(readFile(folder).message(), HasSubstr("Is a directory"));
@@ -63,11 +66,13 @@ TEST_F(FileTest, AFullDiskIsASentence) {
 }
 
 TEST_F(FileTest, PngHoldsTheBytesTopRowFirst) {
-    const std::vector<uint8_t> rgb = {255, 0, 0, 0, 255, 0, /**/ 0, 0, 255, 1, 2, 3, /**/ 9, 8, 7, 254, 253, 252};
+    const std::vector<uint8_t> rgb = {255, 0, 0, 0,      255, 0, /**/ 0, 0,   255,
+                                      1,   2, 3, /**/ 9, 8,   7, 254,    253, 252};
     ASSERT_TRUE(writePng(folder / "a.png", 2, 3, 3, rgb).ok());
     int width = 0, height = 0, channels = 0;
     const std::string file = readFile(folder / "a.png").value();
-    uint8_t* decoded = stbi_load_from_memory(reinterpret_cast<const uint8_t*>(file.data()), int(file.size()), &width, &height, &channels, 0);
+    uint8_t* decoded = stbi_load_from_memory(reinterpret_cast<const uint8_t*>(file.data()),
+                                             int(file.size()), &width, &height, &channels, 0);
     ASSERT_NE(decoded, nullptr);
     EXPECT_EQ(width, 2);
     EXPECT_EQ(height, 3);

@@ -32,7 +32,9 @@ TEST(ImageMetrics, ConstantImagesHaveTheValuesWorkedOutByHand) {
 TEST(ImageMetrics, RelmseAndEnergyDoNotDependOnTheSceneScale) {
     const ImageMetrics one = compareImages(constant(2, 2, 1), constant(1, 2, 3)).value();
     const float scale = 4096.0f; // a power of two: exact
-    const ImageMetrics other = compareImages(constant(2 * scale, 2 * scale, scale), constant(scale, 2 * scale, 3 * scale)).value();
+    const ImageMetrics other =
+        compareImages(constant(2 * scale, 2 * scale, scale), constant(scale, 2 * scale, 3 * scale))
+            .value();
     EXPECT_NEAR(other.relmse, one.relmse, 1e-12);
     EXPECT_NEAR(other.energy, one.energy, 1e-12);
     EXPECT_NEAR(other.rmse, double(scale) * one.rmse, 1e-9);
@@ -62,7 +64,9 @@ TEST(ImageMetrics, NonFiniteAndNegativeValuesAreCountedFirst) {
     EXPECT_TRUE(std::isnan(metrics.relmse));
 }
 
-TEST(ImageMetrics, ShapesThatDifferAreRefused) { EXPECT_FALSE(compareImages(Image(2, 2, 3), Image(2, 3, 3)).ok()); }
+TEST(ImageMetrics, ShapesThatDifferAreRefused) {
+    EXPECT_FALSE(compareImages(Image(2, 2, 3), Image(2, 3, 3)).ok());
+}
 
 } // namespace
 } // namespace tyndall

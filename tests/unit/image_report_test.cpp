@@ -14,7 +14,8 @@ namespace {
 
 TEST(JsonText, EscapesWhatTheStandardAsksForAndMendsBrokenUtf8) {
     EXPECT_EQ(jsonString("a\"b\\c\n\t\r\x01"), R"("a\"b\\c\n\t\r\u0001")");
-    EXPECT_EQ(jsonString("gr\xc3\xbc\xc3\x9f \xf0\x9f\x98\x80"), "\"gr\xc3\xbc\xc3\x9f \xf0\x9f\x98\x80\"");
+    EXPECT_EQ(jsonString("gr\xc3\xbc\xc3\x9f \xf0\x9f\x98\x80"),
+              "\"gr\xc3\xbc\xc3\x9f \xf0\x9f\x98\x80\"");
     const std::string bad = "\xef\xbf\xbd";
     EXPECT_EQ(jsonString("\xff"), '"' + bad + '"');
     EXPECT_EQ(jsonString("\xc0\xaf"), '"' + bad + bad + '"') << "overlong";
@@ -32,12 +33,23 @@ TEST(JsonText, NumbersAreShortAndReadBackTheSame) {
 
 TEST(JsonText, WritesNestedValuesInOrder) {
     JsonWriter json;
-    json.beginObject().member("b", 1).member("a", "x").key("list").compact().beginArray().value(1.5).value(true).null().endArray();
+    json.beginObject()
+        .member("b", 1)
+        .member("a", "x")
+        .key("list")
+        .compact()
+        .beginArray()
+        .value(1.5)
+        .value(true)
+        .null()
+        .endArray();
     json.key("empty").beginObject().endObject().key("rows").beginArray();
     json.compact().beginObject().member("n", uint64_t(1) << 60).endObject();
     json.compact().beginObject().endObject().endArray().endObject();
-    EXPECT_EQ(json.take(), "{\n  \"b\": 1,\n  \"a\": \"x\",\n  \"list\": [1.5, true, null],\n  \"empty\": {},\n  \"rows\": [\n"
-                           "    {\"n\": 1152921504606846976},\n    {}\n  ]\n}\n");
+    EXPECT_EQ(
+        json.take(),
+        "{\n  \"b\": 1,\n  \"a\": \"x\",\n  \"list\": [1.5, true, null],\n  \"empty\": {},\n  \"rows\": [\n"
+        "    {\"n\": 1152921504606846976},\n    {}\n  ]\n}\n");
 }
 
 TEST(JsonText, MisuseIsCaught) {
@@ -58,7 +70,8 @@ TEST(Trace, HoldsSpansAndNamesTheirTracks) {
     const std::string json = trace.toJson();
     EXPECT_NE(json.find(R"("args": {"name": "CPU"})"), std::string::npos) << json;
     EXPECT_NE(json.find(R"("ph": "X", "name": "scene.load")"), std::string::npos) << json;
-    EXPECT_NE(json.find(R"("ts": 10, "dur": 2.5, "args": {"detail": "ran"})"), std::string::npos) << json;
+    EXPECT_NE(json.find(R"("ts": 10, "dur": 2.5, "args": {"detail": "ran"})"), std::string::npos)
+        << json;
     EXPECT_EQ(json.find("not recorded"), std::string::npos);
 }
 
@@ -75,13 +88,16 @@ struct ProgressTest : ::testing::Test {
     double now = 100;
     std::string text;
     std::string run(ProgressStyle style) {
-        Progress progress("work", style, [&] { return now; }, [&](std::string_view part) { text += part; });
+        Progress progress(
+            "work", style, [&] { return now; }, [&](std::string_view part) { text += part; });
         for (int i = 0; i < 100; ++i, now += 0.25) progress.update(i / 100.0);
         return text;
     }
 };
 
-TEST_F(ProgressTest, ALogGetsALineNowAndThen) { EXPECT_EQ(run(ProgressStyle::Lines), "work: 40 %, 15 s left\nwork: 80 %, 5 s left\n"); }
+TEST_F(ProgressTest, ALogGetsALineNowAndThen) {
+    EXPECT_EQ(run(ProgressStyle::Lines), "work: 40 %, 15 s left\nwork: 80 %, 5 s left\n");
+}
 TEST_F(ProgressTest, ATerminalsLineIsClearedAtTheEnd) {
     run(ProgressStyle::Terminal);
     EXPECT_EQ(text.substr(0, 4), "\r\x1b[K");

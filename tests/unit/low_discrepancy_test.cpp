@@ -16,7 +16,8 @@ TEST(LowDiscrepancy, EveryPowerOfTwoOfPointsHasOneInEachElementaryInterval) {
                     const dvec2 p = lowDiscrepancyPoint(i, key);
                     cells.emplace(int(p.x * (1 << xBits)), int(p.y * (1 << (m - xBits))));
                 }
-                ASSERT_EQ(cells.size(), size_t(1) << m) << "key " << key << ", 2^" << m << " points, " << xBits << " bits of x";
+                ASSERT_EQ(cells.size(), size_t(1) << m)
+                    << "key " << key << ", 2^" << m << " points, " << xBits << " bits of x";
             }
 }
 
@@ -27,7 +28,8 @@ TEST(LowDiscrepancy, SequencesOfDifferentKeysAreUncorrelated) {
         for (uint64_t b = a + 1; b < 8; ++b) {
             dvec2 sum(0);
             for (uint32_t i = 0; i < kPoints; ++i)
-                sum += (lowDiscrepancyPoint(i, a) - 0.5) * (lowDiscrepancyPoint(i, b) - 0.5) / double(kPoints);
+                sum += (lowDiscrepancyPoint(i, a) - 0.5) * (lowDiscrepancyPoint(i, b) - 0.5) /
+                       double(kPoints);
             const double bound = 4.5 / (12 * std::sqrt(double(kPoints)));
             EXPECT_LE(std::abs(sum.x), bound) << a << " and " << b;
             EXPECT_LE(std::abs(sum.y), bound) << a << " and " << b;

@@ -17,11 +17,14 @@ namespace {
 using test::DenseField;
 using test::Draw;
 
-BrickGrid bricksOf(const DenseField& field) { return makeBrickGrid(field.voxels, field.first, field.size, dmat4(1)); }
+BrickGrid bricksOf(const DenseField& field) {
+    return makeBrickGrid(field.voxels, field.first, field.size, dmat4(1));
+}
 
 DenseField randomField(Draw& draw, ivec3 first, ivec3 size, double emptyShare) {
     DenseField field(first, size);
-    for (float& voxel : field.voxels) voxel = draw.uniform() < emptyShare ? 0.0f : float(draw.uniform(0, 10));
+    for (float& voxel : field.voxels)
+        voxel = draw.uniform() < emptyShare ? 0.0f : float(draw.uniform(0, 10));
     return field;
 }
 
@@ -43,9 +46,13 @@ TEST(BrickGrid, SampleEqualsTrilinearOfTheDenseArray) {
         const DenseField field = randomField(draw, {-5, 3, 100}, size, 0.3);
         const BrickGrid grid = bricksOf(field);
         for (int i = 0; i < 4000; ++i) {
-            dvec3 p = dvec3(field.first) + dvec3(size) * dvec3(draw.uniform(-0.3, 1.3), draw.uniform(-0.3, 1.3), draw.uniform(-0.3, 1.3)) - 1.0;
+            dvec3 p = dvec3(field.first) +
+                      dvec3(size) * dvec3(draw.uniform(-0.3, 1.3), draw.uniform(-0.3, 1.3),
+                                          draw.uniform(-0.3, 1.3)) -
+                      1.0;
             if (i % 4 == 0) p = glm::floor(p); // voxels themselves
-            ASSERT_NEAR(grid.sample(p), field.trilinear(p), 1e-11) << p.x << " " << p.y << " " << p.z;
+            ASSERT_NEAR(grid.sample(p), field.trilinear(p), 1e-11)
+                << p.x << " " << p.y << " " << p.z;
         }
     }
 }
@@ -118,7 +125,9 @@ TEST(BrickGrid, BoundsHoldTheVoxelsAndOneCellAround) {
 TEST(BrickGrid, RefusesWhatIsNoDensity) {
     EXPECT_THROW(makeBrickGrid({1.0f, 2.0f}, {0, 0, 0}, {1, 1, 1}, dmat4(1)), CheckFailure);
     EXPECT_THROW(makeBrickGrid({-1.0f}, {0, 0, 0}, {1, 1, 1}, dmat4(1)), CheckFailure);
-    EXPECT_THROW(makeBrickGrid({std::numeric_limits<float>::quiet_NaN()}, {0, 0, 0}, {1, 1, 1}, dmat4(1)), CheckFailure);
+    EXPECT_THROW(
+        makeBrickGrid({std::numeric_limits<float>::quiet_NaN()}, {0, 0, 0}, {1, 1, 1}, dmat4(1)),
+        CheckFailure);
 }
 
 TEST(SparseVoxels, BlocksAndTilesEqualTheDenseArray) {
@@ -130,7 +139,8 @@ TEST(SparseVoxels, BlocksAndTilesEqualTheDenseArray) {
             for (int y = 0; y < size; ++y)
                 for (int x = 0; x < size; ++x) field.at(origin + ivec3(x, y, z)) = valueAt(x, y, z);
     };
-    for (const ivec3 origin : {ivec3(-8, 8, 16), ivec3(0, 8, 16), ivec3(-8, 0, 24), ivec3(128, 0, 0), ivec3(-160, -32, -40)}) {
+    for (const ivec3 origin : {ivec3(-8, 8, 16), ivec3(0, 8, 16), ivec3(-8, 0, 24),
+                               ivec3(128, 0, 0), ivec3(-160, -32, -40)}) {
         float values[kBlockVoxels];
         for (float& value : values) value = float(draw.uniform(0, 3));
         ASSERT_TRUE(sparse.addBlock(origin, values).ok());
@@ -172,7 +182,8 @@ TEST(SparseVoxels, FarApartVoxelsAreRefusedInsteadOfFillingMemory) {
     ASSERT_TRUE(sparse.addBlock({100000000, 100000000, 100000000}, values).ok());
     const Result<BrickGrid> grid = sparse.build(dmat4(1));
     ASSERT_FALSE(grid.ok());
-    EXPECT_NE(grid.message().find("200000001×100000001×100000001"), std::string::npos) << grid.message();
+    EXPECT_NE(grid.message().find("200000001×100000001×100000001"), std::string::npos)
+        << grid.message();
 
     GridLimits tight;
     tight.sampleBytes = 3 * kBrickSampleCount * sizeof(float);
@@ -185,7 +196,8 @@ TEST(SparseVoxels, RefusesBlocksThatMakeNoSense) {
     float values[kBlockVoxels] = {1.0f};
     SparseVoxels sparse;
     EXPECT_FALSE(sparse.addBlock({1, 0, 0}, values).ok()) << "no multiple of 8";
-    EXPECT_FALSE(sparse.addBlock({std::numeric_limits<int>::min(), 0, 0}, values).ok()) << "too far out";
+    EXPECT_FALSE(sparse.addBlock({std::numeric_limits<int>::min(), 0, 0}, values).ok())
+        << "too far out";
     ASSERT_TRUE(sparse.addBlock({0, 0, 0}, values).ok());
     EXPECT_FALSE(sparse.addBlock({0, 0, 0}, values).ok()) << "given twice";
     EXPECT_FALSE(sparse.addTile({0, 0, 0}, 12, 1).ok()) << "no power of two";
@@ -195,7 +207,14 @@ TEST(SparseVoxels, RefusesBlocksThatMakeNoSense) {
 
 TEST(SparseVoxels, RepairsAndCountsWhatIsNoDensity) {
     using Limits = std::numeric_limits<float>;
-    float values[kBlockVoxels] = {1.0f, Limits::quiet_NaN(), Limits::infinity(), -Limits::infinity(), -1.0f, 1e38f, Limits::denorm_min(), -0.0f};
+    float values[kBlockVoxels] = {1.0f,
+                                  Limits::quiet_NaN(),
+                                  Limits::infinity(),
+                                  -Limits::infinity(),
+                                  -1.0f,
+                                  1e38f,
+                                  Limits::denorm_min(),
+                                  -0.0f};
     SparseVoxels sparse;
     ASSERT_TRUE(sparse.addBlock({0, 0, 0}, values).ok());
     ASSERT_TRUE(sparse.addTile({8, 0, 0}, 8, -3.0f).ok());
@@ -223,7 +242,8 @@ TEST(BrickPyramid, BoundsAreThoseOfTheVoxelsAtEveryLevel) {
             for (int y = 0; y < size.y; ++y)
                 for (int x = 0; x < size.x; ++x) {
                     const ivec3 low = grid.origin + edge * ivec3(x, y, z);
-                    const auto [minimum, maximum] = voxelRange(field, low, low + edge); // conservative and attained
+                    const auto [minimum, maximum] =
+                        voxelRange(field, low, low + edge); // conservative and attained
                     EXPECT_EQ(double(pyramid.cell(level, {x, y, z}).minimum), minimum) << level;
                     EXPECT_EQ(double(pyramid.cell(level, {x, y, z}).maximum), maximum) << level;
                 }
@@ -236,10 +256,12 @@ TEST(BrickPyramid, NoSampleOfTheFieldLeavesItsBounds) {
     const BrickGrid grid = bricksOf(field);
     const BrickPyramid pyramid(grid);
     for (int i = 0; i < 20000; ++i) {
-        const dvec3 relative = dvec3(draw.uniform(), draw.uniform(), draw.uniform()) * dvec3(grid.brickCount * kBrickCells);
+        const dvec3 relative = dvec3(draw.uniform(), draw.uniform(), draw.uniform()) *
+                               dvec3(grid.brickCount * kBrickCells);
         const double value = grid.sample(dvec3(grid.origin) + relative);
         for (int level = 0; level < pyramid.levelCount(); ++level) {
-            const PyramidCell& cell = pyramid.cell(level, ivec3(relative / double(BrickPyramid::cellEdge(level))));
+            const PyramidCell& cell =
+                pyramid.cell(level, ivec3(relative / double(BrickPyramid::cellEdge(level))));
             ASSERT_LE(value, double(cell.maximum) * (1 + 1e-12));
             ASSERT_GE(value, double(cell.minimum) * (1 - 1e-12));
         }

@@ -17,7 +17,8 @@ std::string refusal(std::string_view csv) {
 }
 
 TEST(Particles, ReadsBothHeaders) {
-    const Result<ParticleSet> plain = parseParticles("x,y,z,radius,density\n1,2,3,0.5,0.25\n-1e1, 0 ,0.5,1,0\n", "cloud.csv");
+    const Result<ParticleSet> plain =
+        parseParticles("x,y,z,radius,density\n1,2,3,0.5,0.25\n-1e1, 0 ,0.5,1,0\n", "cloud.csv");
     ASSERT_TRUE(plain.ok());
     ASSERT_EQ(plain->particles.size(), 2u);
     EXPECT_FALSE(plain->hasTemperature);
@@ -28,7 +29,8 @@ TEST(Particles, ReadsBothHeaders) {
     EXPECT_EQ(plain->bounds().minimum, dvec3(-11, -1, -0.5));
     EXPECT_EQ(plain->bounds().maximum, dvec3(1.5, 2.5, 3.5));
 
-    const Result<ParticleSet> hot = parseParticles("\xef\xbb\xbfx,y,z,radius,density,temperature\r\n\r\n0,0,0,1,1,1500\r\n", "fire.csv");
+    const Result<ParticleSet> hot = parseParticles(
+        "\xef\xbb\xbfx,y,z,radius,density,temperature\r\n\r\n0,0,0,1,1,1500\r\n", "fire.csv");
     ASSERT_TRUE(hot.ok()) << hot.message();
     EXPECT_TRUE(hot->hasTemperature);
     EXPECT_EQ(hot->particles[0].temperature, 1500.0f);
@@ -36,23 +38,31 @@ TEST(Particles, ReadsBothHeaders) {
 
 TEST(Particles, RefusalsNameTheLineAndWhatWouldBeRight) {
     const std::string header = "x,y,z,radius,density\n";
-    EXPECT_EQ(refusal(header + "0,0,0,1,1\n0,0,0,1,one\n"), "'cloud.csv', line 3: density is 'one'; a finite number is needed");
+    EXPECT_EQ(refusal(header + "0,0,0,1,1\n0,0,0,1,one\n"),
+              "'cloud.csv', line 3: density is 'one'; a finite number is needed");
     EXPECT_EQ(refusal(header + "\n0,0,0,1\n"), "'cloud.csv', line 3: 4 values; the header has 5");
     EXPECT_EQ(refusal(header + "0,0,0,1,1,1\n"), "'cloud.csv', line 2: 6 values; the header has 5");
-    EXPECT_EQ(refusal(header + "0,0,0,0,1\n"), "'cloud.csv', line 2: radius is 0; it must be greater than 0");
-    EXPECT_EQ(refusal(header + "0,0,0,1,-1\n"), "'cloud.csv', line 2: density is -1; it must not be negative");
-    EXPECT_EQ(refusal("x,y,z,radius,density,temperature\n0,0,0,1,1,-1\n"), "'cloud.csv', line 2: temperature is -1; it must not be negative");
-    EXPECT_NE(refusal("x,y,radius\n").find("line 1: the header is 'x,y,radius'; it must be"), std::string::npos);
+    EXPECT_EQ(refusal(header + "0,0,0,0,1\n"),
+              "'cloud.csv', line 2: radius is 0; it must be greater than 0");
+    EXPECT_EQ(refusal(header + "0,0,0,1,-1\n"),
+              "'cloud.csv', line 2: density is -1; it must not be negative");
+    EXPECT_EQ(refusal("x,y,z,radius,density,temperature\n0,0,0,1,1,-1\n"),
+              "'cloud.csv', line 2: temperature is -1; it must not be negative");
+    EXPECT_NE(refusal("x,y,radius\n").find("line 1: the header is 'x,y,radius'; it must be"),
+              std::string::npos);
     EXPECT_EQ(refusal(header), "'cloud.csv' holds no particles, only a header");
     EXPECT_NE(refusal("").find("is empty"), std::string::npos);
     for (const char* bad : {"nan", "inf", "1e99", "1x", "", " ", "0x10", "1 2"})
-        EXPECT_NE(refusal(header + bad + ",0,0,1,1\n").find("line 2: x is '"), std::string::npos) << bad;
+        EXPECT_NE(refusal(header + bad + ",0,0,1,1\n").find("line 2: x is '"), std::string::npos)
+            << bad;
 }
 
 TEST(Particles, RubbishIsRefusedInOnePrintableSentence) {
     std::string rubbish = "x,y,z,radius,density\n";
     for (int i = 0; i < 3000; ++i) rubbish += char(i * 37 % 256);
-    for (const std::string& text : {rubbish, std::string(100000, ','), std::string(1000, '\0'), std::string("x,y,z,radius,density\n") + std::string(50000, '9')}) {
+    for (const std::string& text :
+         {rubbish, std::string(100000, ','), std::string(1000, '\0'),
+          std::string("x,y,z,radius,density\n") + std::string(50000, '9')}) {
         const std::string message = refusal(text);
         EXPECT_NE(message, "taken");
         EXPECT_LT(message.size(), 250u);
@@ -79,7 +89,8 @@ TEST(Particles, GeneratedCloudIsReproducibleAndStaysWithinItsRadius) {
             ASSERT_GT(p.radius, 0.0f);
             ASSERT_GT(p.density, 0.0f);
         }
-        const Result<ParticleSet> again = generateParticles("cloud", count, 7, 2.5), other = generateParticles("cloud", count, 8, 2.5);
+        const Result<ParticleSet> again = generateParticles("cloud", count, 7, 2.5),
+                                  other = generateParticles("cloud", count, 8, 2.5);
         EXPECT_EQ(again->particles.back().position, cloud->particles.back().position);
         EXPECT_NE(other->particles.back().position, cloud->particles.back().position);
     }

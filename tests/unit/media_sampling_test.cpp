@@ -46,9 +46,13 @@ TEST(TruncatedExponentialSampling, InvertsTheDistribution) {
                 const double u = (i + 0.5) / 50;
                 const DistanceSample<double> sample = sampleTruncatedExponential(u, sigma, length);
                 const double depth = sigma * length;
-                const double share = depth < 1e-12 ? sample.distance / length : std::expm1(-sigma * sample.distance) / std::expm1(-depth);
+                const double share =
+                    depth < 1e-12 ? sample.distance / length
+                                  : std::expm1(-sigma * sample.distance) / std::expm1(-depth);
                 EXPECT_NEAR(share, u, 1e-11) << sigma << " " << length;
-                const double density = depth < 1e-12 ? 1 / length : -sigma * std::exp(-sigma * sample.distance) / std::expm1(-depth);
+                const double density = depth < 1e-12 ? 1 / length
+                                                     : -sigma * std::exp(-sigma * sample.distance) /
+                                                           std::expm1(-depth);
                 EXPECT_NEAR(sample.density / density, 1, 1e-11);
             }
 }
@@ -58,8 +62,10 @@ TEST(TruncatedExponentialSampling, StaysInsideAndFiniteAtTheExtremes) {
         for (const float length : {0.0f, 1e-10f, 1.0f, 1e6f})
             for (const float u : {0.0f, 1e-7f, 0.5f, 1 - 0x1p-24f}) {
                 const DistanceSample<float> sample = sampleTruncatedExponential(u, sigma, length);
-                EXPECT_TRUE(sample.distance >= 0 && sample.distance <= length) << sigma << " " << length << " " << u;
-                EXPECT_TRUE(std::isfinite(sample.density) && sample.density >= 0) << sigma << " " << length << " " << u;
+                EXPECT_TRUE(sample.distance >= 0 && sample.distance <= length)
+                    << sigma << " " << length << " " << u;
+                EXPECT_TRUE(std::isfinite(sample.density) && sample.density >= 0)
+                    << sigma << " " << length << " " << u;
             }
 }
 
@@ -69,11 +75,14 @@ TEST(EquiangularSampling, SpreadsTheAngleEvenly) {
             for (int i = 0; i < 50; ++i) {
                 const double u = (i + 0.5) / 50, length = 5;
                 const DistanceSample<double> sample = sampleEquiangular(u, nearest, height, length);
-                const double begin = std::atan(-nearest / height), end = std::atan((length - nearest) / height);
+                const double begin = std::atan(-nearest / height),
+                             end = std::atan((length - nearest) / height);
                 const double angle = std::atan((sample.distance - nearest) / height);
                 EXPECT_NEAR((angle - begin) / (end - begin), u, 1e-10);
                 const double along = sample.distance - nearest;
-                EXPECT_NEAR(sample.density * (end - begin) * (height * height + along * along) / height, 1, 1e-10);
+                EXPECT_NEAR(sample.density * (end - begin) * (height * height + along * along) /
+                                height,
+                            1, 1e-10);
             }
 }
 
@@ -83,7 +92,8 @@ TEST(EquiangularSampling, DensityIntegratesToOne) {
             const double length = 1;
             double sum = 0;
             constexpr int kSteps = 200000;
-            for (int i = 0; i < kSteps; ++i) sum += equiangularDensity((i + 0.5) / kSteps, nearest, height, length) / kSteps;
+            for (int i = 0; i < kSteps; ++i)
+                sum += equiangularDensity((i + 0.5) / kSteps, nearest, height, length) / kSteps;
             EXPECT_NEAR(sum, 1, 1e-5) << nearest << " " << height;
         }
 }
@@ -93,9 +103,12 @@ TEST(EquiangularSampling, StaysInsideAndFiniteAtTheExtremes) {
         for (const float height : {0.0f, 1e-12f, 1.0f, 1e12f})
             for (const float length : {0.0f, 1e-6f, 1.0f, 1e6f})
                 for (const float u : {0.0f, 0.5f, 1 - 0x1p-24f}) {
-                    const DistanceSample<float> sample = sampleEquiangular(u, nearest, height, length);
-                    EXPECT_TRUE(sample.distance >= 0 && sample.distance <= length) << nearest << " " << height << " " << length << " " << u;
-                    EXPECT_TRUE(std::isfinite(sample.density) && sample.density >= 0) << nearest << " " << height << " " << length << " " << u;
+                    const DistanceSample<float> sample =
+                        sampleEquiangular(u, nearest, height, length);
+                    EXPECT_TRUE(sample.distance >= 0 && sample.distance <= length)
+                        << nearest << " " << height << " " << length << " " << u;
+                    EXPECT_TRUE(std::isfinite(sample.density) && sample.density >= 0)
+                        << nearest << " " << height << " " << length << " " << u;
                 }
 }
 

@@ -15,26 +15,30 @@ openvdb::Coord coord(ivec3 p) { return {p.x, p.y, p.z}; }
 
 openvdb::math::Transform::Ptr transformOf(const VolumeSpec& spec) {
     if (spec.frustum)
-        return std::make_shared<openvdb::math::Transform>(openvdb::math::MapBase::Ptr(
-            new openvdb::math::NonlinearFrustumMap(openvdb::BBoxd(openvdb::Vec3d(0), openvdb::Vec3d(10)), 0.5, 2.0)));
+        return std::make_shared<openvdb::math::Transform>(
+            openvdb::math::MapBase::Ptr(new openvdb::math::NonlinearFrustumMap(
+                openvdb::BBoxd(openvdb::Vec3d(0), openvdb::Vec3d(10)), 0.5, 2.0)));
     openvdb::Mat4d matrix; // row vectors: glm's columns are its rows
     for (int column = 0; column < 4; ++column)
         for (int row = 0; row < 4; ++row) matrix(column, row) = spec.worldFromIndex[column][row];
     return openvdb::math::Transform::createLinearTransform(matrix);
 }
 
-template <typename Grid>
-typename Grid::Ptr makeGrid(const VolumeSpec& spec) {
+template <typename Grid> typename Grid::Ptr makeGrid(const VolumeSpec& spec) {
     using Value = typename Grid::ValueType;
     typename Grid::Ptr grid = Grid::create(Value(spec.background));
     grid->setName(spec.name);
     grid->setTransform(transformOf(spec));
     if (spec.gridClass != VolumeSpec::Class::Unknown)
-        grid->setGridClass(spec.gridClass == VolumeSpec::Class::Fog ? openvdb::GRID_FOG_VOLUME : openvdb::GRID_LEVEL_SET);
+        grid->setGridClass(spec.gridClass == VolumeSpec::Class::Fog ? openvdb::GRID_FOG_VOLUME
+                                                                    : openvdb::GRID_LEVEL_SET);
     for (const VolumeSpec::Tile& tile : spec.tiles)
-        grid->sparseFill(openvdb::CoordBBox(coord(tile.first), coord(tile.last)), Value(tile.value), true);
-    for (const auto& [index, value] : spec.voxels) grid->tree().setValueOn(coord(index), Value(value));
-    for (const auto& [index, value] : spec.inactiveVoxels) grid->tree().setValueOff(coord(index), Value(value));
+        grid->sparseFill(openvdb::CoordBBox(coord(tile.first), coord(tile.last)), Value(tile.value),
+                         true);
+    for (const auto& [index, value] : spec.voxels)
+        grid->tree().setValueOn(coord(index), Value(value));
+    for (const auto& [index, value] : spec.inactiveVoxels)
+        grid->tree().setValueOff(coord(index), Value(value));
     return grid;
 }
 
@@ -53,11 +57,13 @@ openvdb::GridBase::Ptr makeAnyGrid(const VolumeSpec& spec) {
 template <typename Build>
 void writeAs(const fs::path& path, const openvdb::FloatGrid& grid, nanovdb::io::Codec codec) {
     // Full checksums, as the converter program makes them.
-    const auto handle = nanovdb::openToNanoVDB<nanovdb::HostBuffer, openvdb::FloatTree, Build>(grid, nanovdb::StatsMode::All, nanovdb::ChecksumMode::Full);
+    const auto handle = nanovdb::openToNanoVDB<nanovdb::HostBuffer, openvdb::FloatTree, Build>(
+        grid, nanovdb::StatsMode::All, nanovdb::ChecksumMode::Full);
     nanovdb::io::writeGrid(path.string(), handle, codec);
 }
 
-void writeFloats(const fs::path& path, const openvdb::FloatGrid& grid, NanoType type, nanovdb::io::Codec codec) {
+void writeFloats(const fs::path& path, const openvdb::FloatGrid& grid, NanoType type,
+                 nanovdb::io::Codec codec) {
     switch (type) {
     case NanoType::Fp4: return writeAs<nanovdb::Fp4>(path, grid, codec);
     case NanoType::Fp8: return writeAs<nanovdb::Fp8>(path, grid, codec);
@@ -68,7 +74,9 @@ void writeFloats(const fs::path& path, const openvdb::FloatGrid& grid, NanoType 
 }
 
 nanovdb::io::Codec codecOf(NanoCodec codec) {
-    return codec == NanoCodec::Zip ? nanovdb::io::Codec::ZIP : codec == NanoCodec::Blosc ? nanovdb::io::Codec::BLOSC : nanovdb::io::Codec::NONE;
+    return codec == NanoCodec::Zip     ? nanovdb::io::Codec::ZIP
+           : codec == NanoCodec::Blosc ? nanovdb::io::Codec::BLOSC
+                                       : nanovdb::io::Codec::NONE;
 }
 
 openvdb::GridBase::Ptr readGrid(const fs::path& path, const std::string& name) {
@@ -90,7 +98,8 @@ void writeOpenVdb(const fs::path& path, const std::vector<VolumeSpec>& specs) {
 void writeNanoVdb(const fs::path& path, const VolumeSpec& spec, NanoType type, NanoCodec codec) {
     openvdb::initialize();
     if (type == NanoType::Double) {
-        const auto handle = nanovdb::openToNanoVDB<nanovdb::HostBuffer, openvdb::DoubleTree>(*makeGrid<openvdb::DoubleGrid>(spec));
+        const auto handle = nanovdb::openToNanoVDB<nanovdb::HostBuffer, openvdb::DoubleTree>(
+            *makeGrid<openvdb::DoubleGrid>(spec));
         return nanovdb::io::writeGrid(path.string(), handle, codecOf(codec));
     }
     writeFloats(path, *makeGrid<openvdb::FloatGrid>(spec), type, codecOf(codec));
@@ -105,22 +114,29 @@ struct VolumeOracle::Impl {
     openvdb::DoubleGrid::Ptr grid;
 };
 
-VolumeOracle::VolumeOracle(const fs::path& path, const std::string& name) : impl_(std::make_unique<Impl>()) {
+VolumeOracle::VolumeOracle(const fs::path& path, const std::string& name)
+    : impl_(std::make_unique<Impl>()) {
     const openvdb::GridBase::Ptr grid = readGrid(path, name);
-    if (const auto floats = openvdb::gridPtrCast<openvdb::FloatGrid>(grid)) impl_->grid = std::make_shared<openvdb::DoubleGrid>(*floats);
-    else impl_->grid = openvdb::gridPtrCast<openvdb::DoubleGrid>(grid);
+    if (const auto floats = openvdb::gridPtrCast<openvdb::FloatGrid>(grid))
+        impl_->grid = std::make_shared<openvdb::DoubleGrid>(*floats);
+    else
+        impl_->grid = openvdb::gridPtrCast<openvdb::DoubleGrid>(grid);
 }
 
 VolumeOracle::~VolumeOracle() = default;
 
 double VolumeOracle::sample(const dvec3& world) const {
-    const openvdb::tools::GridSampler<openvdb::DoubleGrid, openvdb::tools::BoxSampler> sampler(*impl_->grid);
+    const openvdb::tools::GridSampler<openvdb::DoubleGrid, openvdb::tools::BoxSampler> sampler(
+        *impl_->grid);
     return sampler.wsSample({world.x, world.y, world.z});
 }
 
-double VolumeOracle::integrate(const dvec3& origin, const dvec3& direction, double length, int steps) const {
+double VolumeOracle::integrate(const dvec3& origin, const dvec3& direction, double length,
+                               int steps) const {
     const auto accessor = impl_->grid->getConstAccessor();
-    const openvdb::tools::GridSampler<openvdb::DoubleGrid::ConstAccessor, openvdb::tools::BoxSampler> sampler(accessor, impl_->grid->transform());
+    const openvdb::tools::GridSampler<openvdb::DoubleGrid::ConstAccessor,
+                                      openvdb::tools::BoxSampler>
+        sampler(accessor, impl_->grid->transform());
     double sum = 0;
     for (int i = 0; i < steps; ++i) {
         const dvec3 p = origin + (i + 0.5) / steps * length * direction;
@@ -136,7 +152,8 @@ dvec3 VolumeOracle::world(const dvec3& index) const {
 
 std::pair<ivec3, ivec3> VolumeOracle::activeBox() const {
     const openvdb::CoordBBox box = impl_->grid->evalActiveVoxelBoundingBox();
-    return {{box.min().x(), box.min().y(), box.min().z()}, {box.max().x(), box.max().y(), box.max().z()}};
+    return {{box.min().x(), box.min().y(), box.min().z()},
+            {box.max().x(), box.max().y(), box.max().z()}};
 }
 
 double VolumeOracle::voxel(ivec3 index) const { return impl_->grid->tree().getValue(coord(index)); }

@@ -36,9 +36,11 @@ enum class NanoCodec { None = 0, Zip = 1, Blosc = 2 };
 
 void writeOpenVdb(const std::filesystem::path& path, const std::vector<VolumeSpec>& grids);
 /// The spec's type is ignored in favour of `type`.
-void writeNanoVdb(const std::filesystem::path& path, const VolumeSpec& grid, NanoType type, NanoCodec codec);
+void writeNanoVdb(const std::filesystem::path& path, const VolumeSpec& grid, NanoType type,
+                  NanoCodec codec);
 /// A grid of an OpenVDB file as NanoVDB.
-void convertToNanoVdb(const std::filesystem::path& from, const std::filesystem::path& to, NanoType type, NanoCodec codec);
+void convertToNanoVdb(const std::filesystem::path& from, const std::filesystem::path& to,
+                      NanoType type, NanoCodec codec);
 
 /// A float or double grid as OpenVDB reads it.
 class VolumeOracle {
@@ -48,7 +50,8 @@ public:
     /// openvdb::tools::BoxSampler at a position of the world.
     [[nodiscard]] double sample(const dvec3& world) const;
     /// Midpoint rule in `steps` over origin + t·direction, t in [0,length].
-    [[nodiscard]] double integrate(const dvec3& origin, const dvec3& direction, double length, int steps) const;
+    [[nodiscard]] double integrate(const dvec3& origin, const dvec3& direction, double length,
+                                   int steps) const;
     /// World position of an index position, by the file's transform.
     [[nodiscard]] dvec3 world(const dvec3& index) const;
     /// Index box of the active voxels.

@@ -4,7 +4,8 @@
 #ifdef FAULT_nothing
 extern "C" int tyndall_not_a_plugin() { return 0; }
 #else
-extern "C" __attribute__((visibility("default"))) const tyndall::plugin::PluginDescriptor* tyndall_plugin() {
+extern "C" __attribute__((visibility("default"))) const tyndall::plugin::PluginDescriptor*
+tyndall_plugin() {
     static tyndall::plugin::PluginDescriptor descriptor{
         sizeof(tyndall::plugin::PluginDescriptor), tyndall::plugin::kAbiVersion, "faulty",
         []() -> tyndall::plugin::Plugin* { return nullptr; }};

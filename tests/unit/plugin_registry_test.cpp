@@ -31,10 +31,14 @@ TEST(PluginRegistry, AnotherAbiVersionIsRefusedWithBothNumbers) {
 
 TEST(PluginRegistry, EveryOtherFaultHasItsSentence) {
     EXPECT_NE(refusal(FAULTY_PLUGINS "/faulty_plugin_size.so").find("bytes"), std::string::npos);
-    EXPECT_NE(refusal(FAULTY_PLUGINS "/faulty_plugin_incomplete.so").find("incomplete"), std::string::npos);
-    EXPECT_NE(refusal(FAULTY_PLUGINS "/faulty_plugin_nothing.so").find("no symbol 'tyndall_plugin'"), std::string::npos);
+    EXPECT_NE(refusal(FAULTY_PLUGINS "/faulty_plugin_incomplete.so").find("incomplete"),
+              std::string::npos);
+    EXPECT_NE(
+        refusal(FAULTY_PLUGINS "/faulty_plugin_nothing.so").find("no symbol 'tyndall_plugin'"),
+        std::string::npos);
     EXPECT_NE(refusal(FAULTY_PLUGINS "/missing.so").find("does not exist"), std::string::npos);
-    EXPECT_NE(refusal((test::sourceDir() / "CMakeLists.txt").string()).find("cannot be loaded"), std::string::npos);
+    EXPECT_NE(refusal((test::sourceDir() / "CMakeLists.txt").string()).find("cannot be loaded"),
+              std::string::npos);
 }
 
 TEST(PluginRegistry, ASharedLibraryReplacesTheBuiltInPluginOfItsName) {
@@ -55,7 +59,8 @@ TEST(PluginRegistry, SettingsAndShadersArriveAtTheHost) {
     SettingsRegistry settings;
     EXPECT_TRUE(registry.setup(host, settings).empty());
     EXPECT_TRUE(settings.set("tint.red", "0.5").ok());
-    EXPECT_NE(std::find(host.shaders.begin(), host.shaders.end(), "example_tint/tint.comp"), host.shaders.end());
+    EXPECT_NE(std::find(host.shaders.begin(), host.shaders.end(), "example_tint/tint.comp"),
+              host.shaders.end());
 }
 
 } // namespace

@@ -21,7 +21,9 @@ Result<LoadedScene> loadText(const std::string& text) {
     return loadScene(path);
 }
 
-Result<LoadedScene> loadNode(const std::string& node) { return loadText(R"({"tyndall": 1, "nodes": [)" + node + "]}"); }
+Result<LoadedScene> loadNode(const std::string& node) {
+    return loadText(R"({"tyndall": 1, "nodes": [)" + node + "]}");
+}
 
 /// The sentence after the file's name.
 std::string refusal(const Result<LoadedScene>& result) {
@@ -43,7 +45,8 @@ TEST(SceneFile, CornellBoxLoads) {
     EXPECT_NEAR(glm::distance(bounds.maximum, dvec3(1, 2, 1)), 0, 1e-6);
     const auto world = scene.worldTransforms();
     for (size_t i = 0; i < scene.nodes.size(); ++i) {
-        if (!scene.nodes[i].primitive || scene.nodes[i].primitive->shape != PrimitiveShape::Plane) continue;
+        if (!scene.nodes[i].primitive || scene.nodes[i].primitive->shape != PrimitiveShape::Plane)
+            continue;
         const dvec3 normal = dmat3(world[i]) * dvec3(0, 1, 0);
         EXPECT_GT(glm::dot(normal, dvec3(0, 1, 0) - dvec3(world[i][3])), 0) << scene.nodes[i].name;
     }
@@ -71,14 +74,16 @@ TEST(SceneFile, EveryKeyOfANodeArrives) {
     EXPECT_EQ(scene.name, "all");
     EXPECT_EQ(scene.ev100, 7.5f);
     EXPECT_EQ(scene.environment.radiance, vec3(1, 2, 3));
-    EXPECT_EQ(scene.settings, (std::vector<std::string>{"z.b=true", "a.f=0.1", "m.s=text", "i=12"})) << "in the order written";
+    EXPECT_EQ(scene.settings, (std::vector<std::string>{"z.b=true", "a.f=0.1", "m.s=text", "i=12"}))
+        << "in the order written";
     const auto node = [&](const std::string& name) -> const Node& {
         for (const Node& one : scene.nodes)
             if (one.name == name) return one;
         CHECK(false, name);
     };
     const Node& child = node("child");
-    EXPECT_EQ(scene.nodes[size_t(child.parent)].name, "lamp") << "a parent may stand after its child in the file";
+    EXPECT_EQ(scene.nodes[size_t(child.parent)].name, "lamp")
+        << "a parent may stand after its child in the file";
     EXPECT_EQ(child.translation, dvec3(1, 2, 3));
     EXPECT_NEAR(child.rotation.z, std::sqrt(0.5), 1e-15) << "a quaternion is made unit";
     EXPECT_EQ(child.scale, dvec3(1, 2, -3));
@@ -128,7 +133,8 @@ TEST(SceneFile, EveryKeyOfANodeArrives) {
     EXPECT_EQ(camera.type, CameraType::Orthographic);
     EXPECT_EQ(camera.ymag, 3);
     EXPECT_EQ(camera.znear, 0.5);
-    for (const Version version : {scene.versions.structure, scene.versions.lights, scene.versions.environment, scene.lights[0].version})
+    for (const Version version : {scene.versions.structure, scene.versions.lights,
+                                  scene.versions.environment, scene.lights[0].version})
         EXPECT_GT(version, 0u) << "never-loaded is 0";
 }
 
@@ -139,39 +145,65 @@ TEST(SceneFile, RefusalsNameThePlaceAndTheRemedy) {
     };
     const Case cases[] = {
         {R"({"lihgt": {}})", "/nodes/0 has the unknown key 'lihgt'; did you mean 'light'?"},
-        {R"({"light": {"type": "point", "intensty": 1}})", "/nodes/0/light has the unknown key 'intensty'; did you mean 'intensity'?"},
-        {R"({"light": {"type": "point", "intensity": -1}})", "/nodes/0/light/intensity is -1 but must be at least 0"},
-        {R"({"light": {"type": "point", "intensity": "1"}})", "/nodes/0/light/intensity is \"1\" but must be of type number"},
-        {R"({"light": {"type": "pint"}})", "/nodes/0/light/type is \"pint\" but must be directional, point, spot or rect"},
+        {R"({"light": {"type": "point", "intensty": 1}})",
+         "/nodes/0/light has the unknown key 'intensty'; did you mean 'intensity'?"},
+        {R"({"light": {"type": "point", "intensity": -1}})",
+         "/nodes/0/light/intensity is -1 but must be at least 0"},
+        {R"({"light": {"type": "point", "intensity": "1"}})",
+         "/nodes/0/light/intensity is \"1\" but must be of type number"},
+        {R"({"light": {"type": "pint"}})",
+         "/nodes/0/light/type is \"pint\" but must be directional, point, spot or rect"},
         {R"({"light": {}})", "/nodes/0/light lacks the key 'type', which is required"},
         {R"({"light": {"type": "rect", "intensity": 1}})",
          "/nodes/0/light has the key 'intensity', which does not apply to a rect light; it takes type, size, radiance, castsShadows"},
-        {R"({"light": {"type": "spot", "innerConeAngle": 0.5, "outerConeAngle": 0.5}})", "/nodes/0/light/innerConeAngle is 0.5 but must be less than outerConeAngle, 0.5"},
+        {R"({"light": {"type": "spot", "innerConeAngle": 0.5, "outerConeAngle": 0.5}})",
+         "/nodes/0/light/innerConeAngle is 0.5 but must be less than outerConeAngle, 0.5"},
         {R"({"translation": [1, 2]})", "/nodes/0/translation has 2 elements but must have 3"},
-        {R"({"rotation": [0, 0, 0, 0]})", "/nodes/0/rotation is not a rotation: a quaternion x, y, z, w of length 1 is wanted"},
-        {R"({"matrix": [1,0,0,0, 0,1,0,0, 0,0,1,0, 0,0,0,1], "scale": [1,1,1]})", "/nodes/0 has both 'matrix' and 'scale'; one of them would do"},
-        {R"({"matrix": [1,0,0,1, 0,1,0,0, 0,0,1,0, 0,0,0,1]})", "/nodes/0/matrix is not affine: its last row (elements 3, 7, 11 and 15) must be 0, 0, 0, 1"},
-        {R"({"translation": [1e31, 0, 0]})", "/nodes/0/translation/0 is 1e+31 but must be at most 1e+30"},
-        {R"({"parent": "x"})", "/nodes/0/parent is 'x', which is not the name of a node of this file"},
-        {R"({"name": "a", "parent": "a"})", "/nodes holds parents that are below their own children; parents must form a tree"},
-        {R"({"name": "a"}, {"name": "a"})", "/nodes/1/name is 'a' as in /nodes/0, but names must be unique"},
+        {R"({"rotation": [0, 0, 0, 0]})",
+         "/nodes/0/rotation is not a rotation: a quaternion x, y, z, w of length 1 is wanted"},
+        {R"({"matrix": [1,0,0,0, 0,1,0,0, 0,0,1,0, 0,0,0,1], "scale": [1,1,1]})",
+         "/nodes/0 has both 'matrix' and 'scale'; one of them would do"},
+        {R"({"matrix": [1,0,0,1, 0,1,0,0, 0,0,1,0, 0,0,0,1]})",
+         "/nodes/0/matrix is not affine: its last row (elements 3, 7, 11 and 15) must be 0, 0, 0, 1"},
+        {R"({"translation": [1e31, 0, 0]})",
+         "/nodes/0/translation/0 is 1e+31 but must be at most 1e+30"},
+        {R"({"parent": "x"})",
+         "/nodes/0/parent is 'x', which is not the name of a node of this file"},
+        {R"({"name": "a", "parent": "a"})",
+         "/nodes holds parents that are below their own children; parents must form a tree"},
+        {R"({"name": "a"}, {"name": "a"})",
+         "/nodes/1/name is 'a' as in /nodes/0, but names must be unique"},
         {R"({"material": {}})", "/nodes/0 has a 'material' without a 'primitive' to wear it"},
-        {R"({"primitive": {"shape": "box", "size": [1, 1]}})", "/nodes/0/primitive/size has 2 elements but must have 3 for a box"},
-        {R"({"primitive": {"shape": "box", "size": [1, 0, 1]}})", "/nodes/0/primitive/size/1 is 0 but must be at least 1e-09"},
-        {R"({"medium": {"type": "homogeneous"}})", "/nodes/0/medium lacks the key 'shape', which a homogeneous medium needs: everywhere, box, sphere or height"},
-        {R"({"medium": {"type": "homogeneous", "shape": "everywhere", "size": [1,1,1]}})", "/nodes/0/medium/size does not apply to the shape everywhere"},
-        {R"({"medium": {"type": "grid"}})", "/nodes/0/medium lacks the key 'file', which a medium of type grid needs: a .vdb or .nvdb file"},
-        {R"({"medium": {"type": "grid", "file": "a%04d.vdb"}})", "/nodes/0/medium lacks the key 'frames', which a file name with a % pattern needs: [first, last]"},
-        {R"({"medium": {"type": "grid", "file": "a%s.vdb", "frames": [1, 2]}})", "/nodes/0/medium/file: 'a%s.vdb' is not a file pattern: exactly one %d, %4d or %04d is wanted"},
-        {R"({"medium": {"type": "particles"}})", "/nodes/0/medium needs either a 'file' or a rule to 'generate' its particles, one of the two"},
-        {R"({"medium": {"type": "homogeneous", "shape": "box", "anisotropy": 1}})", "/nodes/0/medium/anisotropy is 1 but must be at most 0.9999"},
-        {R"({"medium": {"type": "homogeneous", "shape": "box", "emission": 1}})", "/nodes/0/medium/emission is 1 but must be of type array or object"},
+        {R"({"primitive": {"shape": "box", "size": [1, 1]}})",
+         "/nodes/0/primitive/size has 2 elements but must have 3 for a box"},
+        {R"({"primitive": {"shape": "box", "size": [1, 0, 1]}})",
+         "/nodes/0/primitive/size/1 is 0 but must be at least 1e-09"},
+        {R"({"medium": {"type": "homogeneous"}})",
+         "/nodes/0/medium lacks the key 'shape', which a homogeneous medium needs: everywhere, box, sphere or height"},
+        {R"({"medium": {"type": "homogeneous", "shape": "everywhere", "size": [1,1,1]}})",
+         "/nodes/0/medium/size does not apply to the shape everywhere"},
+        {R"({"medium": {"type": "grid"}})",
+         "/nodes/0/medium lacks the key 'file', which a medium of type grid needs: a .vdb or .nvdb file"},
+        {R"({"medium": {"type": "grid", "file": "a%04d.vdb"}})",
+         "/nodes/0/medium lacks the key 'frames', which a file name with a % pattern needs: [first, last]"},
+        {R"({"medium": {"type": "grid", "file": "a%s.vdb", "frames": [1, 2]}})",
+         "/nodes/0/medium/file: 'a%s.vdb' is not a file pattern: exactly one %d, %4d or %04d is wanted"},
+        {R"({"medium": {"type": "particles"}})",
+         "/nodes/0/medium needs either a 'file' or a rule to 'generate' its particles, one of the two"},
+        {R"({"medium": {"type": "homogeneous", "shape": "box", "anisotropy": 1}})",
+         "/nodes/0/medium/anisotropy is 1 but must be at most 0.9999"},
+        {R"({"medium": {"type": "homogeneous", "shape": "box", "emission": 1}})",
+         "/nodes/0/medium/emission is 1 but must be of type array or object"},
         {R"({"medium": {"type": "homogeneous", "shape": "box", "emission": {"temperatureGrid": "t"}}})",
          "/nodes/0/medium/emission names a temperatureGrid, but only a medium of type grid has grids"},
-        {R"({"camera": {"type": "perspective", "ymag": 1}})", "/nodes/0/camera has the key 'ymag', which does not apply to a perspective camera; it takes type, yfov, znear"},
-        {R"({"animate": {"property": "translation", "times": [0, 1], "values": [[0,0,0]]}})", "/nodes/0/animate/values holds 3 numbers but 2 times of 'translation' need 6"},
-        {R"({"animate": {"property": "translation", "times": [1, 1], "values": [0,0,0,0,0,0]}})", "/nodes/0/animate/times/1 must be later than the time before"},
-        {R"({"animate": {"property": "light.color", "times": [1], "values": [0,0,0]}})", "/nodes/0/animate/property is 'light.color' but the node has no light"},
+        {R"({"camera": {"type": "perspective", "ymag": 1}})",
+         "/nodes/0/camera has the key 'ymag', which does not apply to a perspective camera; it takes type, yfov, znear"},
+        {R"({"animate": {"property": "translation", "times": [0, 1], "values": [[0,0,0]]}})",
+         "/nodes/0/animate/values holds 3 numbers but 2 times of 'translation' need 6"},
+        {R"({"animate": {"property": "translation", "times": [1, 1], "values": [0,0,0,0,0,0]}})",
+         "/nodes/0/animate/times/1 must be later than the time before"},
+        {R"({"animate": {"property": "light.color", "times": [1], "values": [0,0,0]}})",
+         "/nodes/0/animate/property is 'light.color' but the node has no light"},
         {R"({"name": 1})", "/nodes/0/name is 1 but must be of type string"},
         {R"([])", "/nodes/0 is [] but must be of type object"},
     };
@@ -179,30 +211,47 @@ TEST(SceneFile, RefusalsNameThePlaceAndTheRemedy) {
 }
 
 TEST(SceneFile, WholeFileRefusals) {
-    EXPECT_EQ(refusal(loadText("{")), "line 1, column 2: not valid JSON: syntax error while parsing object key - unexpected end of input; expected string literal");
+    EXPECT_EQ(
+        refusal(loadText("{")),
+        "line 1, column 2: not valid JSON: syntax error while parsing object key - unexpected end of input; expected string literal");
     EXPECT_EQ(refusal(loadText("[]")), "the file is [] but must be of type object");
     EXPECT_EQ(refusal(loadText("{}")), "the file lacks the key 'tyndall', which is required");
     EXPECT_EQ(refusal(loadText(R"({"tyndall": 2})")), "/tyndall is 2 but must be 1");
-    EXPECT_EQ(refusal(loadText(R"({"tyndall": 1, "tyndall": 1})")), "key 'tyndall' stands twice in one JSON object");
-    EXPECT_EQ(refusal(loadText(R"({"tyndall": 1, "camera": "eye"})")), "/camera is 'eye', which is not the name of a node with a camera; there is none");
-    EXPECT_EQ(refusal(loadText(R"({"tyndall": 1, "environment": {"rotation": 1}})")),
-              "/environment has the key 'rotation', which does not apply to an environment without a file; it takes radiance");
-    EXPECT_EQ(refusal(loadText(std::string(100, '['))), "line 1, column 65: JSON nests deeper than 64 levels");
-    EXPECT_NE(refusal(loadText(R"({"tyndall": 1, "name": 1e999})")).find("not valid JSON: number overflow"), std::string::npos);
-    EXPECT_NE(refusal(loadText("{\"tyndall\": 1, \"name\": \"\xff\"}")).find("not valid JSON"), std::string::npos);
+    EXPECT_EQ(refusal(loadText(R"({"tyndall": 1, "tyndall": 1})")),
+              "key 'tyndall' stands twice in one JSON object");
+    EXPECT_EQ(refusal(loadText(R"({"tyndall": 1, "camera": "eye"})")),
+              "/camera is 'eye', which is not the name of a node with a camera; there is none");
+    EXPECT_EQ(
+        refusal(loadText(R"({"tyndall": 1, "environment": {"rotation": 1}})")),
+        "/environment has the key 'rotation', which does not apply to an environment without a file; it takes radiance");
+    EXPECT_EQ(refusal(loadText(std::string(100, '['))),
+              "line 1, column 65: JSON nests deeper than 64 levels");
+    EXPECT_NE(refusal(loadText(R"({"tyndall": 1, "name": 1e999})"))
+                  .find("not valid JSON: number overflow"),
+              std::string::npos);
+    EXPECT_NE(refusal(loadText("{\"tyndall\": 1, \"name\": \"\xff\"}")).find("not valid JSON"),
+              std::string::npos);
     // Each number is fine, their product is not.
     std::string chain;
     for (int i = 0; i < 12; ++i)
-        chain += (i ? ", " : "") + std::string("{\"name\": \"n") + std::to_string(i) + "\", \"scale\": [1e20, 1, 1]" +
+        chain += (i ? ", " : "") + std::string("{\"name\": \"n") + std::to_string(i) +
+                 "\", \"scale\": [1e20, 1, 1]" +
                  (i ? ", \"parent\": \"n" + std::to_string(i - 1) + "\"" : "") + "}";
-    EXPECT_NE(refusal(loadNode(chain)).find("node 'n1' (number 1) ends up beyond 1e30 metres"), std::string::npos) << refusal(loadNode(chain));
-    EXPECT_NE(loadScene("nowhere.scene.json").message().find("nowhere.scene.json"), std::string::npos);
-    EXPECT_EQ(loadScene("a.obj").message(), "a.obj: '.obj' is not the ending of a scene; .scene.json, .gltf, .glb, .vdb and .nvdb are read");
+    EXPECT_NE(refusal(loadNode(chain)).find("node 'n1' (number 1) ends up beyond 1e30 metres"),
+              std::string::npos)
+        << refusal(loadNode(chain));
+    EXPECT_NE(loadScene("nowhere.scene.json").message().find("nowhere.scene.json"),
+              std::string::npos);
+    EXPECT_EQ(
+        loadScene("a.obj").message(),
+        "a.obj: '.obj' is not the ending of a scene; .scene.json, .gltf, .glb, .vdb and .nvdb are read");
 }
 
 TEST(SceneFile, LoadingCanBeCancelled) {
     const fs::path folder = test::scratchDir("scene-cancel");
-    ASSERT_TRUE(writeFileAtomically(folder / "a.scene.json", R"({"tyndall": 1, "nodes": [{"gltf": "a.gltf"}]})").ok());
+    ASSERT_TRUE(writeFileAtomically(folder / "a.scene.json",
+                                    R"({"tyndall": 1, "nodes": [{"gltf": "a.gltf"}]})")
+                    .ok());
     LoadOptions options;
     std::vector<std::string> reported;
     options.progress = [&](float fraction, const std::string& what) {
@@ -216,7 +265,8 @@ TEST(SceneFile, LoadingCanBeCancelled) {
 }
 
 TEST(SceneFile, EndlessMediumUnderTheSkyIsNoted) {
-    const std::string medium = R"({"name": "fog", "medium": {"type": "homogeneous", "shape": "everywhere", "scattering": [1,1,1]}})";
+    const std::string medium =
+        R"({"name": "fog", "medium": {"type": "homogeneous", "shape": "everywhere", "scattering": [1,1,1]}})";
     const auto dark = loadNode(medium);
     ASSERT_TRUE(dark.ok()) << dark.message();
     EXPECT_TRUE(dark->notes.empty());
@@ -227,7 +277,8 @@ TEST(SceneFile, EndlessMediumUnderTheSkyIsNoted) {
 }
 
 TEST(SceneFile, ParticlesAreKeptAndNoted) {
-    const auto loaded = loadNode(R"({"medium": {"type": "particles", "generate": {"kind": "cloud", "count": 10, "seed": 3, "radius": 2}, "scattering": [9,9,9]}})");
+    const auto loaded = loadNode(
+        R"({"medium": {"type": "particles", "generate": {"kind": "cloud", "count": 10, "seed": 3, "radius": 2}, "scattering": [9,9,9]}})");
     ASSERT_TRUE(loaded.ok()) << loaded.message();
     EXPECT_EQ(loaded->scene.media.at(0).kind, MediumKind::Particles);
     EXPECT_EQ(loaded->scene.nodes.at(0).particles, (ParticleGenerator{"cloud", 10, 3, 2}));
@@ -235,7 +286,8 @@ TEST(SceneFile, ParticlesAreKeptAndNoted) {
 }
 
 TEST(SceneFile, SuppliedCameraSeesTheWholeScene) {
-    const auto loaded = loadNode(R"({"primitive": {"shape": "box", "size": [1, 2, 30]}, "translation": [100, 0, 0]})");
+    const auto loaded = loadNode(
+        R"({"primitive": {"shape": "box", "size": [1, 2, 30]}, "translation": [100, 0, 0]})");
     ASSERT_TRUE(loaded.ok()) << loaded.message();
     EXPECT_EQ(loaded->supplied, (std::vector<std::string>{"a camera that frames the scene"}));
     const Scene& scene = loaded->scene;
@@ -245,7 +297,8 @@ TEST(SceneFile, SuppliedCameraSeesTheWholeScene) {
     const double slope = std::tan(camera.yfov / 2);
     double highest = 0;
     for (int i = 0; i < 8; ++i) {
-        const dvec3 p(cameraFromWorld * dvec4(100 + (i & 1 ? 0.5 : -0.5), i & 2 ? 1 : -1, i & 4 ? 15 : -15, 1));
+        const dvec3 p(cameraFromWorld *
+                      dvec4(100 + (i & 1 ? 0.5 : -0.5), i & 2 ? 1 : -1, i & 4 ? 15 : -15, 1));
         EXPECT_LT(p.z, -camera.znear) << "in front of the near plane";
         highest = std::max({highest, std::abs(p.y) / -p.z / slope, std::abs(p.x) / -p.z / slope});
     }
@@ -302,10 +355,14 @@ TEST(SceneWriter, EveryKeySurvivesTheRoundTrip) {
     const auto written = sceneFileText(first->scene, first->scene.path.parent_path());
     ASSERT_TRUE(written.ok()) << written.message();
     const auto without = [](std::string text) { // layout apart
-        text.erase(std::remove_if(text.begin(), text.end(), [](char c) { return c == ' ' || c == '\n'; }), text.end());
+        text.erase(
+            std::remove_if(text.begin(), text.end(), [](char c) { return c == ' ' || c == '\n'; }),
+            text.end());
         return text;
     };
-    for (const char* node : nodes) EXPECT_NE(without(*written).find(without(node)), std::string::npos) << node << "\n" << *written;
+    for (const char* node : nodes)
+        EXPECT_NE(without(*written).find(without(node)), std::string::npos) << node << "\n"
+                                                                            << *written;
     const auto second = loadText(*written);
     ASSERT_TRUE(second.ok()) << second.message();
     EXPECT_EQ(sceneFileText(second->scene, second->scene.path.parent_path()).value(), *written);
@@ -315,13 +372,21 @@ TEST(SceneWriter, FileNamesFollowTheSceneToAnotherFolder) {
     const fs::path folder = test::scratchDir("scene-move");
     fs::create_directories(folder / "a");
     fs::create_directories(folder / "b");
-    ASSERT_TRUE(writeFileAtomically(folder / "a/model.gltf", R"({"asset": {"version": "2.0"}, "nodes": [{"name": "inside"}]})").ok());
-    ASSERT_TRUE(writeFileAtomically(folder / "a/s.scene.json", R"({"tyndall": 1, "nodes": [{"name": "n", "gltf": "model.gltf"}]})").ok());
+    ASSERT_TRUE(
+        writeFileAtomically(folder / "a/model.gltf",
+                            R"({"asset": {"version": "2.0"}, "nodes": [{"name": "inside"}]})")
+            .ok());
+    ASSERT_TRUE(
+        writeFileAtomically(folder / "a/s.scene.json",
+                            R"({"tyndall": 1, "nodes": [{"name": "n", "gltf": "model.gltf"}]})")
+            .ok());
     const auto loaded = loadScene(folder / "a/s.scene.json");
     ASSERT_TRUE(loaded.ok()) << loaded.message();
-    ASSERT_EQ(loaded->scene.nodes.size(), 3u) << "the mounting node, the glTF's node, the supplied camera";
+    ASSERT_EQ(loaded->scene.nodes.size(), 3u)
+        << "the mounting node, the glTF's node, the supplied camera";
     ASSERT_TRUE(writeSceneFile(loaded->scene, folder / "b/s.scene.json").ok());
-    EXPECT_NE(readFile(folder / "b/s.scene.json").value().find(R"("gltf": "../a/model.gltf")"), std::string::npos);
+    EXPECT_NE(readFile(folder / "b/s.scene.json").value().find(R"("gltf": "../a/model.gltf")"),
+              std::string::npos);
     const auto moved = loadScene(folder / "b/s.scene.json");
     ASSERT_TRUE(moved.ok()) << moved.message();
     EXPECT_EQ(moved->scene.nodes.size(), 3u) << "what the glTF file holds is not written twice";
@@ -329,7 +394,10 @@ TEST(SceneWriter, FileNamesFollowTheSceneToAnotherFolder) {
 
 TEST(SceneWriter, BareFileCanBeSavedWithWhatWasSupplied) {
     const fs::path folder = test::scratchDir("scene-bare");
-    ASSERT_TRUE(writeFileAtomically(folder / "model.gltf", R"({"asset": {"version": "2.0"}, "nodes": [{"name": "inside"}]})").ok());
+    ASSERT_TRUE(
+        writeFileAtomically(folder / "model.gltf",
+                            R"({"asset": {"version": "2.0"}, "nodes": [{"name": "inside"}]})")
+            .ok());
     const auto bare = loadScene(folder / "model.gltf");
     ASSERT_TRUE(bare.ok()) << bare.message();
     EXPECT_EQ(bare->supplied.size(), 3u) << "a camera, a light, an exposure";
@@ -360,7 +428,8 @@ TEST(Content, EverySceneLoadsHasItsCameraAndSurvivesTheRoundTrip) {
         const auto again = loadScene(folder / "copy.scene.json");
         ASSERT_TRUE(again.ok()) << again.message();
         Scene back = again->scene;
-        EXPECT_EQ(sceneFileText(back, folder).value(), readFile(folder / "copy.scene.json").value());
+        EXPECT_EQ(sceneFileText(back, folder).value(),
+                  readFile(folder / "copy.scene.json").value());
         EXPECT_EQ(back.nodes.size(), loaded->scene.nodes.size());
         EXPECT_EQ(back.worldTransforms(), loaded->scene.worldTransforms());
     }

@@ -21,12 +21,16 @@ class GltfBuilder {
 public:
     /// Returns the accessor's index.
     template <typename T>
-    int add(const std::vector<T>& values, int componentType, const std::string& type, int components, bool normalized = false) {
+    int add(const std::vector<T>& values, int componentType, const std::string& type,
+            int components, bool normalized = false) {
         while (bytes_.size() % 4) bytes_ += '\0';
         const size_t size = values.size() * sizeof(T);
-        views_ += fmt::format(R"({}{{"buffer": 0, "byteOffset": {}, "byteLength": {}}})", views_.empty() ? "" : ", ", bytes_.size(), size);
-        accessors_ += fmt::format(R"({}{{"bufferView": {}, "componentType": {}, "count": {}, "type": "{}", "normalized": {}}})",
-                                  accessors_.empty() ? "" : ", ", count_, componentType, values.size() / size_t(components), type, normalized);
+        views_ += fmt::format(R"({}{{"buffer": 0, "byteOffset": {}, "byteLength": {}}})",
+                              views_.empty() ? "" : ", ", bytes_.size(), size);
+        accessors_ += fmt::format(
+            R"({}{{"bufferView": {}, "componentType": {}, "count": {}, "type": "{}", "normalized": {}}})",
+            accessors_.empty() ? "" : ", ", count_, componentType,
+            values.size() / size_t(components), type, normalized);
         bytes_.append(reinterpret_cast<const char*>(values.data()), size);
         return count_++;
     }
@@ -37,9 +41,9 @@ public:
     Result<GltfScene> import(const std::string& rest) const {
         static const fs::path folder = test::scratchDir("gltf");
         CHECK(writeFileAtomically(folder / "test.bin", bytes_).ok());
-        const std::string json =
-            fmt::format(R"({{"asset": {{"version": "2.0"}}, "buffers": [{{"uri": "test.bin", "byteLength": {}}}], "bufferViews": [{}], "accessors": [{}]{}}})",
-                        bytes_.size(), views_, accessors_, rest);
+        const std::string json = fmt::format(
+            R"({{"asset": {{"version": "2.0"}}, "buffers": [{{"uri": "test.bin", "byteLength": {}}}], "bufferViews": [{}], "accessors": [{}]{}}})",
+            bytes_.size(), views_, accessors_, rest);
         CHECK(writeFileAtomically(folder / "test.gltf", json).ok());
         return importGltf(folder / "test.gltf");
     }
@@ -56,7 +60,9 @@ Result<GltfScene> importText(const std::string& text) {
 }
 
 /// A file without buffers: asset and what is given.
-Result<GltfScene> importKeys(const std::string& keys) { return importText(R"({"asset": {"version": "2.0"}, )" + keys + "}"); }
+Result<GltfScene> importKeys(const std::string& keys) {
+    return importText(R"({"asset": {"version": "2.0"}, )" + keys + "}");
+}
 
 std::string refusal(const Result<GltfScene>& result) {
     if (result.ok()) return "(loaded)";
@@ -86,25 +92,30 @@ TEST(GltfImport, EveryPrimitiveModeBecomesAList) {
             GltfBuilder builder;
             builder.positions(kFive);
             builder.indices({0, 1, 2, 3, 4});
-            const auto loaded = builder.import(
-                fmt::format(R"(, "meshes": [{{"primitives": [{{"attributes": {{"POSITION": 0}}, "mode": {}{}}}]}}], "nodes": [{{"mesh": 0}}])", one.mode,
-                            indexed ? R"(, "indices": 1)" : ""));
+            const auto loaded = builder.import(fmt::format(
+                R"(, "meshes": [{{"primitives": [{{"attributes": {{"POSITION": 0}}, "mode": {}{}}}]}}], "nodes": [{{"mesh": 0}}])",
+                one.mode, indexed ? R"(, "indices": 1)" : ""));
             ASSERT_TRUE(loaded.ok()) << loaded.message();
             const Mesh& mesh = loaded->scene.meshes.at(0);
             EXPECT_EQ(mesh.topology, one.topology);
             ASSERT_EQ(mesh.indices.size(), one.list.size()) << "mode " << one.mode;
             for (size_t i = 0; i < one.list.size(); ++i) {
-                const vec3 expected(kFive[3 * one.list[i]], kFive[3 * one.list[i] + 1], kFive[3 * one.list[i] + 2]);
-                EXPECT_EQ(mesh.positions[mesh.indices[i]], expected) << "mode " << one.mode << ", corner " << i;
+                const vec3 expected(kFive[3 * one.list[i]], kFive[3 * one.list[i] + 1],
+                                    kFive[3 * one.list[i] + 2]);
+                EXPECT_EQ(mesh.positions[mesh.indices[i]], expected)
+                    << "mode " << one.mode << ", corner " << i;
             }
             EXPECT_EQ(mesh.normals.empty(), one.topology != MeshTopology::Triangles);
-            for (const vec3& normal : mesh.normals) EXPECT_NEAR(std::abs(normal.z), 1, 1e-6) << "flat normals of a figure in the plane z = 0";
+            for (const vec3& normal : mesh.normals)
+                EXPECT_NEAR(std::abs(normal.z), 1, 1e-6)
+                    << "flat normals of a figure in the plane z = 0";
         }
 }
 
 TEST(GltfImport, QuantisedAttributesEqualTheirFloats) {
     GltfBuilder builder;
-    builder.add<int16_t>({-32768, 0, 32767, 0, 32767, 0, 16384, -16384, 100, 0}, 5122, "VEC3", 3, true); // 3 elements, one number unused
+    builder.add<int16_t>({-32768, 0, 32767, 0, 32767, 0, 16384, -16384, 100, 0}, 5122, "VEC3", 3,
+                         true); // 3 elements, one number unused
     builder.add<int8_t>({127, 0, 0, 0, 127, 0, 0, 0, 127}, 5120, "VEC3", 3, true);
     builder.add<uint8_t>({0, 255, 51, 102, 255, 255}, 5121, "VEC2", 2, true);
     builder.add<uint16_t>({65535, 0, 13107, 0, 0, 0, 0, 65535, 65535}, 5123, "VEC3", 3, true);
@@ -119,23 +130,31 @@ TEST(GltfImport, QuantisedAttributesEqualTheirFloats) {
     EXPECT_EQ(mesh.normals[1], vec3(0, 1, 0));
     EXPECT_EQ(mesh.uvs[0][0], vec2(0, 1));
     EXPECT_EQ(mesh.uvs[0][1], vec2(0.2f, 0.4f));
-    EXPECT_EQ(mesh.colors[0], vec4(1, 0, 13107 / 65535.0f, 1)) << "alpha is 1 where a colour has three numbers";
-    EXPECT_EQ(mesh.uvs[1][0], vec2(7, 300)) << "integers that are not normalised stay what they are";
+    EXPECT_EQ(mesh.colors[0], vec4(1, 0, 13107 / 65535.0f, 1))
+        << "alpha is 1 where a colour has three numbers";
+    EXPECT_EQ(mesh.uvs[1][0], vec2(7, 300))
+        << "integers that are not normalised stay what they are";
 }
 
 TEST(GltfImport, InterleavedAndOffsetAccessorsAreFollowed) {
     // Two vertices' worth of padding, then position and UV interleaved with a stride of 24 bytes.
     std::vector<float> data(6, -1.0f);
     for (int i = 0; i < 3; ++i)
-        for (const float v : {float(i), float(10 + i), float(20 + i), 0.25f * float(i), 0.5f, -1.0f}) data.push_back(v);
+        for (const float v :
+             {float(i), float(10 + i), float(20 + i), 0.25f * float(i), 0.5f, -1.0f})
+            data.push_back(v);
     std::string bytes(reinterpret_cast<const char*>(data.data()), data.size() * 4);
     const fs::path folder = test::scratchDir("gltf-interleaved");
     ASSERT_TRUE(writeFileAtomically(folder / "a b.bin", bytes).ok());
-    ASSERT_TRUE(writeFileAtomically(folder / "a.gltf", R"({"asset": {"version": "2.0"}, "buffers": [{"uri": "a%20b.bin", "byteLength": 96}],
+    ASSERT_TRUE(
+        writeFileAtomically(
+            folder / "a.gltf",
+            R"({"asset": {"version": "2.0"}, "buffers": [{"uri": "a%20b.bin", "byteLength": 96}],
         "bufferViews": [{"buffer": 0, "byteOffset": 16, "byteLength": 80, "byteStride": 24}],
         "accessors": [{"bufferView": 0, "byteOffset": 8, "componentType": 5126, "count": 3, "type": "VEC3"},
                       {"bufferView": 0, "byteOffset": 20, "componentType": 5126, "count": 3, "type": "VEC2"}],
-        "meshes": [{"primitives": [{"attributes": {"POSITION": 0, "TEXCOORD_0": 1}}]}], "nodes": [{"mesh": 0}]})").ok());
+        "meshes": [{"primitives": [{"attributes": {"POSITION": 0, "TEXCOORD_0": 1}}]}], "nodes": [{"mesh": 0}]})")
+            .ok());
     const auto loaded = importGltf(folder / "a.gltf");
     ASSERT_TRUE(loaded.ok()) << loaded.message();
     const Mesh& mesh = loaded->scene.meshes.at(0);
@@ -146,21 +165,25 @@ TEST(GltfImport, InterleavedAndOffsetAccessorsAreFollowed) {
 }
 
 TEST(GltfImport, SparseAccessorReplacesElements) {
-    const auto path = REQUIRE_CONTENT("gltf/khronos/SimpleSparseAccessor/SimpleSparseAccessor.gltf");
+    const auto path =
+        REQUIRE_CONTENT("gltf/khronos/SimpleSparseAccessor/SimpleSparseAccessor.gltf");
     const auto loaded = importGltf(path);
     ASSERT_TRUE(loaded.ok()) << loaded.message();
     // Two rows of seven vertices, (0..6, 0) and (0..6, 1); vertices 8, 10 and 12 become (1,2,0), (3,3,0), (5,4,0).
     std::vector<vec3> expected;
     for (const vec3& p : {vec3(1, 2, 0), vec3(3, 3, 0), vec3(5, 4, 0)}) expected.push_back(p);
     const auto& positions = loaded->scene.meshes.at(0).positions;
-    for (const vec3& p : expected) EXPECT_NE(std::find(positions.begin(), positions.end(), p), positions.end());
-    for (const vec3& p : {vec3(1, 1, 0), vec3(3, 1, 0), vec3(5, 1, 0)}) EXPECT_EQ(std::find(positions.begin(), positions.end(), p), positions.end());
+    for (const vec3& p : expected)
+        EXPECT_NE(std::find(positions.begin(), positions.end(), p), positions.end());
+    for (const vec3& p : {vec3(1, 1, 0), vec3(3, 1, 0), vec3(5, 1, 0)})
+        EXPECT_EQ(std::find(positions.begin(), positions.end(), p), positions.end());
     EXPECT_EQ(loaded->scene.meshes[0].bounds.maximum, dvec3(6, 4, 0));
 }
 
 TEST(GltfImport, MaterialsArriveWithAllTheirTextures) {
     // A 1x1 red PNG.
-    const std::string png = "iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAIAAACQd1PeAAAADElEQVR4nGP4z8AAAAMBAQDJ/pLvAAAAAElFTkSuQmCC";
+    const std::string png =
+        "iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAIAAACQd1PeAAAADElEQVR4nGP4z8AAAAMBAQDJ/pLvAAAAAElFTkSuQmCC";
     const auto loaded = importKeys(R"("images": [{"uri": "data:image/png;base64,)" + png + R"("}],
         "samplers": [{"magFilter": 9728, "minFilter": 9985, "wrapS": 33071, "wrapT": 33648}],
         "textures": [{"source": 0, "sampler": 0}, {"source": 0}],
@@ -187,7 +210,8 @@ TEST(GltfImport, MaterialsArriveWithAllTheirTextures) {
     EXPECT_EQ(material.alphaCutoff, 0.25f);
     EXPECT_TRUE(material.doubleSided);
     EXPECT_TRUE(material.unlit);
-    EXPECT_EQ(material.baseColorTexture.uvSet, 2) << "the transform's texCoord replaces the texture's";
+    EXPECT_EQ(material.baseColorTexture.uvSet, 2)
+        << "the transform's texCoord replaces the texture's";
     EXPECT_EQ(material.baseColorTexture.offset, vec2(0.1f, 0.2f));
     EXPECT_EQ(material.baseColorTexture.scale, vec2(3, 4));
     EXPECT_EQ(material.baseColorTexture.rotation, 0.5f);
@@ -195,9 +219,11 @@ TEST(GltfImport, MaterialsArriveWithAllTheirTextures) {
     ASSERT_EQ(scene.textures.size(), 2u);
     ASSERT_EQ(scene.images.size(), 1u) << "one picture, used by two textures";
     EXPECT_EQ(scene.images[0].rgba, (std::vector<uint8_t>{255, 0, 0, 255}));
-    const Sampler expected{Filter::Nearest, Filter::Linear, MipFilter::Nearest, Wrap::ClampToEdge, Wrap::MirroredRepeat};
+    const Sampler expected{Filter::Nearest, Filter::Linear, MipFilter::Nearest, Wrap::ClampToEdge,
+                           Wrap::MirroredRepeat};
     EXPECT_EQ(scene.textures[size_t(material.normalTexture.texture)].sampler, expected);
-    EXPECT_EQ(scene.textures[size_t(material.metallicRoughnessTexture.texture)].sampler, Sampler{}) << "repeat, linear";
+    EXPECT_EQ(scene.textures[size_t(material.metallicRoughnessTexture.texture)].sampler, Sampler{})
+        << "repeat, linear";
     const Material& plain = scene.materials.at(1);
     EXPECT_EQ(plain.baseColor, vec4(1));
     EXPECT_EQ(plain.metallic, 1) << "glTF's default";
@@ -205,7 +231,8 @@ TEST(GltfImport, MaterialsArriveWithAllTheirTextures) {
 }
 
 TEST(GltfImport, NodesKeepTheirTransformsCamerasAndLights) {
-    const auto loaded = importKeys(R"("scene": 1, "scenes": [{"nodes": [3]}, {"nodes": [0]}], "extensionsUsed": ["KHR_lights_punctual"],
+    const auto loaded = importKeys(
+        R"("scene": 1, "scenes": [{"nodes": [3]}, {"nodes": [0]}], "extensionsUsed": ["KHR_lights_punctual"],
         "nodes": [{"name": "root", "children": [2, 1], "matrix": [0,1,0,0, -1,0,0,0, 0,0,1,0, 5,0,0,1]},
                   {"name": "eye", "camera": 0, "translation": [1, 2, 3], "rotation": [0, 2, 0, 0], "scale": [1, 1, -1]},
                   {"name": "lamp", "extensions": {"KHR_lights_punctual": {"light": 0}}}, {"name": "other scene"}],
@@ -241,9 +268,11 @@ TEST(GltfImport, InstancesAreTranslationRotationScale) {
     GltfBuilder builder;
     builder.positions({0, 0, 0, 1, 0, 0, 0, 1, 0});
     builder.positions({10, 0, 0, 0, 20, 0});
-    builder.add<int16_t>({0, 0, 32767, 0, 0, 0, 0, 32767}, 5122, "VEC4", 4, true); // half a turn about Z; none
+    builder.add<int16_t>({0, 0, 32767, 0, 0, 0, 0, 32767}, 5122, "VEC4", 4,
+                         true); // half a turn about Z; none
     builder.positions({1, 1, 1, 2, 3, 4});
-    const auto loaded = builder.import(R"(, "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}], "nodes": [{"mesh": 0,
+    const auto loaded = builder.import(
+        R"(, "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}], "nodes": [{"mesh": 0,
         "extensions": {"EXT_mesh_gpu_instancing": {"attributes": {"TRANSLATION": 1, "ROTATION": 2, "SCALE": 3}}}}],
         "extensionsRequired": ["EXT_mesh_gpu_instancing"])");
     ASSERT_TRUE(loaded.ok()) << loaded.message();
@@ -261,89 +290,127 @@ TEST(GltfImport, SkinnedMeshTakesItsRestPoseAndNotItsNode) {
     builder.positions({0, 0, 0, 1, 0, 0, 0, 1, 0});
     builder.add<uint8_t>({0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0}, 5121, "VEC4", 4);
     builder.add<float>({1, 0, 0, 0, 1, 0, 0, 0, 0.5, 0.5, 0, 0}, 5126, "VEC4", 4);
-    const auto loaded = builder.import(R"(, "meshes": [{"primitives": [{"attributes": {"POSITION": 0, "JOINTS_0": 1, "WEIGHTS_0": 2}}]}],
+    const auto loaded = builder.import(
+        R"(, "meshes": [{"primitives": [{"attributes": {"POSITION": 0, "JOINTS_0": 1, "WEIGHTS_0": 2}}]}],
         "skins": [{"joints": [1, 2]}], "nodes": [{"mesh": 0, "skin": 0, "translation": [100, 0, 0]}, {"translation": [0, 0, 3]}, {"translation": [0, 0, 7]}])");
     ASSERT_TRUE(loaded.ok()) << loaded.message();
     const Mesh& mesh = loaded->scene.meshes.at(0);
     EXPECT_EQ(mesh.positions[0], vec3(0, 0, 3));
     EXPECT_EQ(mesh.positions[1], vec3(1, 0, 7));
     EXPECT_EQ(mesh.positions[2], vec3(0, 1, 5)) << "half way between both joints";
-    EXPECT_NEAR(loaded->scene.worldBounds().maximum.x, 1, 1e-6) << "the node's own transform is ignored (glTF 2.0, 3.7.3.3)";
+    EXPECT_NEAR(loaded->scene.worldBounds().maximum.x, 1, 1e-6)
+        << "the node's own transform is ignored (glTF 2.0, 3.7.3.3)";
 }
 
 TEST(GltfImport, MorphTargetsTakeTheirDefaultWeights) {
     GltfBuilder builder;
     builder.positions({0, 0, 0, 1, 0, 0, 0, 1, 0});
     builder.positions({0, 0, 2, 0, 0, 4, 0, 0, 0});
-    const auto loaded = builder.import(R"(, "meshes": [{"weights": [0.5], "primitives": [{"attributes": {"POSITION": 0}, "targets": [{"POSITION": 1}]}]}],
+    const auto loaded = builder.import(
+        R"(, "meshes": [{"weights": [0.5], "primitives": [{"attributes": {"POSITION": 0}, "targets": [{"POSITION": 1}]}]}],
         "nodes": [{"mesh": 0}, {"mesh": 0, "weights": [1]}])");
     ASSERT_TRUE(loaded.ok()) << loaded.message();
     const Scene& scene = loaded->scene;
     EXPECT_EQ(scene.meshes[size_t(scene.nodes[0].meshes.at(0))].positions[1], vec3(1, 0, 2));
-    EXPECT_EQ(scene.meshes[size_t(scene.nodes[1].meshes.at(0))].positions[1], vec3(1, 0, 4)) << "a node's weights replace the mesh's";
+    EXPECT_EQ(scene.meshes[size_t(scene.nodes[1].meshes.at(0))].positions[1], vec3(1, 0, 4))
+        << "a node's weights replace the mesh's";
 }
 
 TEST(GltfImport, NonFiniteNumbersInBuffersBecomeZero) {
     GltfBuilder builder;
     builder.positions({0, NAN, 0, INFINITY, 0, 0, 0, 3e38f, 1});
-    const auto loaded = builder.import(R"(, "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}], "nodes": [{"mesh": 0}])");
+    const auto loaded = builder.import(
+        R"(, "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}], "nodes": [{"mesh": 0}])");
     ASSERT_TRUE(loaded.ok()) << loaded.message();
-    EXPECT_EQ(loaded->scene.meshes.at(0).positions, (std::vector<vec3>{{0, 0, 0}, {0, 0, 0}, {0, 0, 1}}));
+    EXPECT_EQ(loaded->scene.meshes.at(0).positions,
+              (std::vector<vec3>{{0, 0, 0}, {0, 0, 0}, {0, 0, 1}}));
     ASSERT_EQ(loaded->notes.size(), 1u);
-    EXPECT_NE(loaded->notes[0].find("3 values that are not finite"), std::string::npos) << loaded->notes[0];
+    EXPECT_NE(loaded->notes[0].find("3 values that are not finite"), std::string::npos)
+        << loaded->notes[0];
 }
 
 TEST(GltfImport, RefusalsNameThePlace) {
     const std::pair<const char*, const char*> cases[] = {
-        {R"("extensionsRequired": ["KHR_texture_basisu"])", "/extensionsRequired names 'KHR_texture_basisu', which is not supported"},
+        {R"("extensionsRequired": ["KHR_texture_basisu"])",
+         "/extensionsRequired names 'KHR_texture_basisu', which is not supported"},
         {R"("nodes": [{"mesh": 3}])", "/nodes/0/mesh is 3, but 'meshes' has 0 elements"},
         {R"("nodes": [{"mesh": -1}])", "/nodes/0/mesh is -1 but must be at least 0"},
         {R"("nodes": [{"mesh": 1e300}])", "/nodes/0/mesh is 1e+300 but must be at most 2147483647"},
         {R"("nodes": [{"children": [1]}, {"children": [0]}], "scenes": [{"nodes": [0]}])",
          "/nodes/0 is reached twice; every node must have one parent, and none may be below itself"},
-        {R"("nodes": [{"children": [2]}, {"children": [2]}, {}])", "/nodes/2 is reached twice; every node must have one parent, and none may be below itself"},
+        {R"("nodes": [{"children": [2]}, {"children": [2]}, {}])",
+         "/nodes/2 is reached twice; every node must have one parent, and none may be below itself"},
         {R"("nodes": {})", "/nodes is {} but must be of type array"},
-        {R"("nodes": [{"translation": [1, 2, 1e31]}])", "/nodes/0/translation/2 is 1e+31 but must be at most 1e+30"},
-        {R"("buffers": [{"uri": "/etc/passwd", "byteLength": 1}])", "/buffers/0/uri is not relative, and only data URIs and relative paths are read"},
-        {R"("buffers": [{"uri": "http://example.com/a.bin", "byteLength": 1}])", "/buffers/0/uri is not relative, and only data URIs and relative paths are read"},
-        {R"("buffers": [{"uri": "file%3A///etc/passwd", "byteLength": 1}])", "/buffers/0/uri is not relative, and only data URIs and relative paths are read"},
-        {R"("buffers": [{"uri": "no%zz.bin", "byteLength": 1}])", "/buffers/0/uri holds a '%' without two hexadecimal digits"},
-        {R"("buffers": [{"uri": "missing.bin", "byteLength": 1}])", "/buffers/0/uri is 'missing.bin', but there is no such file"},
-        {R"("buffers": [{"uri": "data:application/octet-stream;base64,AA*A", "byteLength": 1}])", "/buffers/0/uri is a data URI with a character that is not base64"},
-        {R"("buffers": [{"uri": "data:application/octet-stream;base64,AAAA", "byteLength": 4}])", "/buffers/0/byteLength is 4, but there are 3 bytes"},
-        {R"("cameras": [{"type": "perspective"}], "nodes": [{"camera": 0}])", "/cameras/0 is perspective but lacks the key 'perspective'"},
+        {R"("nodes": [{"translation": [1, 2, 1e31]}])",
+         "/nodes/0/translation/2 is 1e+31 but must be at most 1e+30"},
+        {R"("buffers": [{"uri": "/etc/passwd", "byteLength": 1}])",
+         "/buffers/0/uri is not relative, and only data URIs and relative paths are read"},
+        {R"("buffers": [{"uri": "http://example.com/a.bin", "byteLength": 1}])",
+         "/buffers/0/uri is not relative, and only data URIs and relative paths are read"},
+        {R"("buffers": [{"uri": "file%3A///etc/passwd", "byteLength": 1}])",
+         "/buffers/0/uri is not relative, and only data URIs and relative paths are read"},
+        {R"("buffers": [{"uri": "no%zz.bin", "byteLength": 1}])",
+         "/buffers/0/uri holds a '%' without two hexadecimal digits"},
+        {R"("buffers": [{"uri": "missing.bin", "byteLength": 1}])",
+         "/buffers/0/uri is 'missing.bin', but there is no such file"},
+        {R"("buffers": [{"uri": "data:application/octet-stream;base64,AA*A", "byteLength": 1}])",
+         "/buffers/0/uri is a data URI with a character that is not base64"},
+        {R"("buffers": [{"uri": "data:application/octet-stream;base64,AAAA", "byteLength": 4}])",
+         "/buffers/0/byteLength is 4, but there are 3 bytes"},
+        {R"("cameras": [{"type": "perspective"}], "nodes": [{"camera": 0}])",
+         "/cameras/0 is perspective but lacks the key 'perspective'"},
     };
-    for (const auto& [keys, sentence] : cases) EXPECT_EQ(refusal(importKeys(keys)), sentence) << keys;
+    for (const auto& [keys, sentence] : cases)
+        EXPECT_EQ(refusal(importKeys(keys)), sentence) << keys;
     EXPECT_EQ(refusal(importText("{}")), "the file lacks the key 'asset', which is required");
-    EXPECT_EQ(refusal(importText(R"({"asset": {"version": "1.0"}})")), "/asset/version is '1.0', but only glTF 2.x is read");
-    EXPECT_EQ(refusal(importText(std::string("glTF\x02\0\0\0\xff\0\0\0", 12))), "the file has 12 bytes but its header says 255; it is cut short");
+    EXPECT_EQ(refusal(importText(R"({"asset": {"version": "1.0"}})")),
+              "/asset/version is '1.0', but only glTF 2.x is read");
+    EXPECT_EQ(refusal(importText(std::string("glTF\x02\0\0\0\xff\0\0\0", 12))),
+              "the file has 12 bytes but its header says 255; it is cut short");
 }
 
 TEST(GltfImport, AccessorsCannotReachOutsideTheirBytes) {
-    const std::string head = R"({"asset": {"version": "2.0"}, "buffers": [{"uri": "data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAA", "byteLength": 36}],
+    const std::string head =
+        R"({"asset": {"version": "2.0"}, "buffers": [{"uri": "data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAA", "byteLength": 36}],
         "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}], "nodes": [{"mesh": 0}], )";
     const auto with = [&](const char* view, const char* accessor) {
-        return refusal(importText(head + R"("bufferViews": [{"buffer": 0, )" + view + R"(}], "accessors": [{"bufferView": 0, "componentType": 5126, "type": "VEC3", )" + accessor + "}]}"));
+        return refusal(importText(
+            head + R"("bufferViews": [{"buffer": 0, )" + view +
+            R"(}], "accessors": [{"bufferView": 0, "componentType": 5126, "type": "VEC3", )" +
+            accessor + "}]}"));
     };
     EXPECT_EQ(with(R"("byteLength": 36)", R"("count": 3)"), "(loaded)");
-    EXPECT_EQ(with(R"("byteLength": 37)", R"("count": 3)"), "/bufferViews/0 spans bytes 0 to 37 of a buffer of 36");
+    EXPECT_EQ(with(R"("byteLength": 37)", R"("count": 3)"),
+              "/bufferViews/0 spans bytes 0 to 37 of a buffer of 36");
     EXPECT_EQ(with(R"("byteLength": 1099511627776, "byteOffset": 1099511627776)", R"("count": 3)"),
               "/bufferViews/0 spans bytes 1099511627776 to 2199023255552 of a buffer of 36");
-    EXPECT_EQ(with(R"("byteLength": 36)", R"("count": 4)"), "/accessors/0 needs 48 bytes from byte 0 on, but its buffer view has 36");
-    EXPECT_EQ(with(R"("byteLength": 36)", R"("count": 3, "byteOffset": 4)"), "/accessors/0 needs 36 bytes from byte 4 on, but its buffer view has 36");
-    EXPECT_EQ(with(R"("byteLength": 36, "byteStride": 4)", R"("count": 3)"), "/accessors/0 has elements of 12 bytes, but its buffer view a stride of 4");
+    EXPECT_EQ(with(R"("byteLength": 36)", R"("count": 4)"),
+              "/accessors/0 needs 48 bytes from byte 0 on, but its buffer view has 36");
+    EXPECT_EQ(with(R"("byteLength": 36)", R"("count": 3, "byteOffset": 4)"),
+              "/accessors/0 needs 36 bytes from byte 4 on, but its buffer view has 36");
+    EXPECT_EQ(with(R"("byteLength": 36, "byteStride": 4)", R"("count": 3)"),
+              "/accessors/0 has elements of 12 bytes, but its buffer view a stride of 4");
     const std::string huge = with(R"("byteLength": 36)", R"("count": 4294967295)");
-    EXPECT_NE(huge.find("/accessors/0 would unpack to 12884901885 elements"), std::string::npos) << huge;
-    EXPECT_NE(refusal(importText(head + R"("bufferViews": [], "accessors": [{"componentType": 5126, "type": "VEC3", "count": 3000000000}]})")).find("would unpack"),
-              std::string::npos) << "an accessor without bytes is zeros, but not any number of them";
+    EXPECT_NE(huge.find("/accessors/0 would unpack to 12884901885 elements"), std::string::npos)
+        << huge;
+    EXPECT_NE(
+        refusal(
+            importText(
+                head +
+                R"("bufferViews": [], "accessors": [{"componentType": 5126, "type": "VEC3", "count": 3000000000}]})"))
+            .find("would unpack"),
+        std::string::npos)
+        << "an accessor without bytes is zeros, but not any number of them";
 }
 
 TEST(GltfImport, IndicesBeyondTheVerticesAreRefused) {
     GltfBuilder builder;
     builder.positions({0, 0, 0, 1, 0, 0, 0, 1, 0});
     builder.indices({0, 1, 3});
-    EXPECT_EQ(refusal(builder.import(R"(, "meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "indices": 1}]}], "nodes": [{"mesh": 0}])")),
-              "/meshes/0/primitives/0/indices holds 3, but there are 3 vertices");
+    EXPECT_EQ(
+        refusal(builder.import(
+            R"(, "meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "indices": 1}]}], "nodes": [{"mesh": 0}])")),
+        "/meshes/0/primitives/0/indices holds 3, but there are 3 vertices");
 }
 
 // --- sample models ----------------------------------------------------------------------------------------------
@@ -377,11 +444,13 @@ TEST(GltfSamples, CompressedVariantsEqualEachOther) {
         }
     }
     const auto plain = REQUIRE_CONTENT("gltf/khronos/BoxTextured/BoxTextured.gltf");
-    expectSameBounds(loadSample(plain).worldBounds(), loadSample(folder / "BoxTextured-draco.glb").worldBounds(), 1e-3);
+    expectSameBounds(loadSample(plain).worldBounds(),
+                     loadSample(folder / "BoxTextured-draco.glb").worldBounds(), 1e-3);
 }
 
 TEST(GltfSamples, TextureTransformTestHasItsTransforms) {
-    const Scene scene = loadSample(REQUIRE_CONTENT("gltf/khronos/TextureTransformTest/TextureTransformTest.gltf"));
+    const Scene scene =
+        loadSample(REQUIRE_CONTENT("gltf/khronos/TextureTransformTest/TextureTransformTest.gltf"));
     const auto find = [&](const std::string& name) -> const TextureRef& {
         for (const Material& material : scene.materials)
             if (material.name == name) return material.baseColorTexture;
@@ -419,7 +488,8 @@ TEST(GltfSamples, AllOfThemAreSound) {
     for (const char* folder : {"gltf", "sponza"})
         if (const auto root = test::sharedContent(folder))
             for (const auto& entry : fs::recursive_directory_iterator(*root))
-                if (entry.path().extension() == ".gltf" || entry.path().extension() == ".glb") files.push_back(entry.path());
+                if (entry.path().extension() == ".gltf" || entry.path().extension() == ".glb")
+                    files.push_back(entry.path());
     if (files.empty()) GTEST_SKIP() << "shared content 'gltf' is not here";
     for (const fs::path& path : files) {
         SCOPED_TRACE(path.string());

@@ -19,11 +19,13 @@ struct Totals {
 Totals measure(const Mesh& mesh) {
     Totals totals;
     for (size_t i = 0; i < mesh.indices.size(); i += 3) {
-        const dvec3 a = mesh.positions[mesh.indices[i]], b = mesh.positions[mesh.indices[i + 1]], c = mesh.positions[mesh.indices[i + 2]];
+        const dvec3 a = mesh.positions[mesh.indices[i]], b = mesh.positions[mesh.indices[i + 1]],
+                    c = mesh.positions[mesh.indices[i + 2]];
         const dvec3 cross = glm::cross(b - a, c - a);
         totals.area += 0.5 * glm::length(cross);
         totals.volume += glm::dot(a, glm::cross(b, c)) / 6;
-        for (size_t k = 0; k < 3; ++k) totals.normalsAgree &= glm::dot(cross, dvec3(mesh.normals[mesh.indices[i + k]])) > 0;
+        for (size_t k = 0; k < 3; ++k)
+            totals.normalsAgree &= glm::dot(cross, dvec3(mesh.normals[mesh.indices[i + k]])) > 0;
     }
     return totals;
 }
@@ -82,7 +84,8 @@ TEST(MeshTools, FlatNormalsGiveEachTriangleItsOwn) {
 }
 
 TEST(MeshTools, TangentsPointAlongGrowingU) {
-    for (const PrimitiveShape shape : {PrimitiveShape::Box, PrimitiveShape::Plane, PrimitiveShape::Sphere}) {
+    for (const PrimitiveShape shape :
+         {PrimitiveShape::Box, PrimitiveShape::Plane, PrimitiveShape::Sphere}) {
         Mesh mesh = makePrimitive({shape, {1, 2, 3}});
         makeTangents(mesh, 0);
         ASSERT_EQ(mesh.tangents.size(), mesh.positions.size());

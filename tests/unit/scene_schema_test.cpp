@@ -14,8 +14,7 @@ namespace tyndall {
 namespace {
 
 /// Calls `visit(keyword, value)` for every keyword of every schema in `schema`.
-template <typename F>
-void forEachKeyword(const Json& schema, F&& visit) {
+template <typename F> void forEachKeyword(const Json& schema, F&& visit) {
     if (!schema.is_object()) return;
     for (const auto& [keyword, value] : schema.items()) {
         visit(keyword, value);
@@ -30,9 +29,29 @@ void forEachKeyword(const Json& schema, F&& visit) {
 }
 
 TEST(SceneSchema, UsesOnlyWhatTheValidatorKnows) {
-    const std::set<std::string> known = {"$schema", "$defs", "$ref", "title", "description", "type", "const", "enum", "anyOf", "properties", "required",
-                                         "additionalProperties", "items", "minItems", "maxItems", "minLength", "minimum", "maximum", "exclusiveMinimum", "exclusiveMaximum"};
-    forEachKeyword(sceneFileSchema(), [&](const std::string& keyword, const Json&) { EXPECT_TRUE(known.contains(keyword)) << keyword; });
+    const std::set<std::string> known = {"$schema",
+                                         "$defs",
+                                         "$ref",
+                                         "title",
+                                         "description",
+                                         "type",
+                                         "const",
+                                         "enum",
+                                         "anyOf",
+                                         "properties",
+                                         "required",
+                                         "additionalProperties",
+                                         "items",
+                                         "minItems",
+                                         "maxItems",
+                                         "minLength",
+                                         "minimum",
+                                         "maximum",
+                                         "exclusiveMinimum",
+                                         "exclusiveMaximum"};
+    forEachKeyword(sceneFileSchema(), [&](const std::string& keyword, const Json&) {
+        EXPECT_TRUE(known.contains(keyword)) << keyword;
+    });
 }
 
 TEST(SceneSchema, EveryObjectRefusesUnknownKeys) {
@@ -40,7 +59,9 @@ TEST(SceneSchema, EveryObjectRefusesUnknownKeys) {
     const auto judge = [&](const Json& schema) {
         if (!schema.is_object() || !schema.contains("properties")) return;
         ++objects;
-        EXPECT_TRUE(schema.contains("additionalProperties") && schema.at("additionalProperties") == false) << schema.dump().substr(0, 200);
+        EXPECT_TRUE(schema.contains("additionalProperties") &&
+                    schema.at("additionalProperties") == false)
+            << schema.dump().substr(0, 200);
     };
     judge(sceneFileSchema());
     for (const auto& [name, inner] : sceneFileSchema().at("$defs").items()) judge(inner);
@@ -51,10 +72,13 @@ TEST(SceneSchema, DocumentationHasEveryKeyAndEveryName) {
     const std::string text = readFile(test::sourceDir() / "docs/scene-format.md").value();
     forEachKeyword(sceneFileSchema(), [&](const std::string& keyword, const Json& value) {
         if (keyword == "properties") {
-            for (const auto& [key, unused] : value.items()) EXPECT_NE(text.find("`" + key + "`"), std::string::npos) << "key " << key;
+            for (const auto& [key, unused] : value.items())
+                EXPECT_NE(text.find("`" + key + "`"), std::string::npos) << "key " << key;
         }
         if (keyword == "enum") {
-            for (const Json& name : value) EXPECT_NE(text.find("`" + name.get<std::string>() + "`"), std::string::npos) << "name " << name;
+            for (const Json& name : value)
+                EXPECT_NE(text.find("`" + name.get<std::string>() + "`"), std::string::npos)
+                    << "name " << name;
         }
     });
 }
@@ -71,11 +95,15 @@ TEST(SceneSchema, DocumentedExampleLoads) {
 }
 
 TEST(JsonSchema, FirstBranchThatFitsTheTypeSpeaks) {
-    const Json schema = Json::parse(R"({"anyOf": [{"type": "array", "maxItems": 1}, {"type": "object", "required": ["a"]}]})");
+    const Json schema = Json::parse(
+        R"({"anyOf": [{"type": "array", "maxItems": 1}, {"type": "object", "required": ["a"]}]})");
     EXPECT_TRUE(validateJson(Json::parse("[1]"), schema).ok());
-    EXPECT_EQ(validateJson(Json::parse("[1, 2]"), schema).message(), "the file has 2 elements but must have 0 to 1");
-    EXPECT_EQ(validateJson(Json::parse("{}"), schema).message(), "the file lacks the key 'a', which is required");
-    EXPECT_EQ(validateJson(Json::parse("3"), schema).message(), "the file is 3 but must be of type array or object");
+    EXPECT_EQ(validateJson(Json::parse("[1, 2]"), schema).message(),
+              "the file has 2 elements but must have 0 to 1");
+    EXPECT_EQ(validateJson(Json::parse("{}"), schema).message(),
+              "the file lacks the key 'a', which is required");
+    EXPECT_EQ(validateJson(Json::parse("3"), schema).message(),
+              "the file is 3 but must be of type array or object");
 }
 
 } // namespace

@@ -32,7 +32,9 @@ double typicalOpticalDepth(const Medium& medium) {
 }
 
 TEST(BareVolume, IsSuppliedWithMediumCameraAndLight) {
-    for (const char* file : {"vdb/sphere_fog_tiny.vdb", "vdb/smoke1.vdb", "vdb/dragon_fog_xform.vdb", "nvdb/wdas_cloud_sixteenth_fpN_zip.nvdb"}) {
+    for (const char* file :
+         {"vdb/sphere_fog_tiny.vdb", "vdb/smoke1.vdb", "vdb/dragon_fog_xform.vdb",
+          "nvdb/wdas_cloud_sixteenth_fpN_zip.nvdb"}) {
         const auto path = REQUIRE_CONTENT(file);
         SCOPED_TRACE(file);
         const auto loaded = loadScene(path);
@@ -43,8 +45,10 @@ TEST(BareVolume, IsSuppliedWithMediumCameraAndLight) {
         const Medium& medium = scene.media[0];
         EXPECT_EQ(medium.kind, MediumKind::Grid);
         EXPECT_NEAR(medium.scattering.x / medium.extinction().x, 0.99f, 1e-4f);
-        EXPECT_NEAR(typicalOpticalDepth(medium), 4, 1.5) << "about 4: the mean is taken over samples, here over volume";
-        EXPECT_EQ(scene.nodes[size_t(0)].localTransform(), dmat4(1.0)) << "the grid's own transform is kept";
+        EXPECT_NEAR(typicalOpticalDepth(medium), 4, 1.5)
+            << "about 4: the mean is taken over samples, here over volume";
+        EXPECT_EQ(scene.nodes[size_t(0)].localTransform(), dmat4(1.0))
+            << "the grid's own transform is kept";
         EXPECT_NE(scene.activeCamera, kNone);
         EXPECT_FALSE(scene.worldBounds().empty());
     }
@@ -55,7 +59,8 @@ TEST(BareVolume, LevelSetAndPointsAreRefusedByName) {
         const auto path = REQUIRE_CONTENT(file);
         const auto loaded = loadScene(path);
         ASSERT_FALSE(loaded.ok()) << file;
-        EXPECT_NE(loaded.message().find(path.filename().string()), std::string::npos) << loaded.message();
+        EXPECT_NE(loaded.message().find(path.filename().string()), std::string::npos)
+            << loaded.message();
     }
 }
 
@@ -90,7 +95,8 @@ TEST(SceneVolumes, SequenceLoadsItsFirstFrameAndKeepsTheRest) {
 TEST(SceneVolumes, FireHasDensityAndTemperature) {
     const auto loaded = loadScene(test::sourceDir() / "content/campfire.scene.json");
     ASSERT_TRUE(loaded.ok()) << loaded.message();
-    const auto fire = std::find_if(loaded->scene.media.begin(), loaded->scene.media.end(), [](const Medium& m) { return m.kind == MediumKind::Grid; });
+    const auto fire = std::find_if(loaded->scene.media.begin(), loaded->scene.media.end(),
+                                   [](const Medium& m) { return m.kind == MediumKind::Grid; });
     ASSERT_NE(fire, loaded->scene.media.end());
     ASSERT_TRUE(fire->temperature != nullptr);
     EXPECT_NEAR(fire->temperature->maximum, 1800, 20) << "the core: 300 K and 1500 K more";
@@ -101,7 +107,11 @@ TEST(ScenePictures, EnvironmentFileIsReadAndSaved) {
     const auto sky = REQUIRE_CONTENT("hdr/studio_small_08_1k.hdr");
     const std::filesystem::path folder = test::scratchDir("scene-sky");
     ASSERT_TRUE(writeFileAtomically(folder / "sky.hdr", readFile(sky).value()).ok());
-    ASSERT_TRUE(writeFileAtomically(folder / "s.scene.json", R"({"tyndall": 1, "environment": {"file": "sky.hdr", "intensity": 3, "rotation": 1.5}})").ok());
+    ASSERT_TRUE(
+        writeFileAtomically(
+            folder / "s.scene.json",
+            R"({"tyndall": 1, "environment": {"file": "sky.hdr", "intensity": 3, "rotation": 1.5}})")
+            .ok());
     const auto loaded = loadScene(folder / "s.scene.json");
     ASSERT_TRUE(loaded.ok()) << loaded.message();
     const Environment& environment = loaded->scene.environment;
@@ -110,36 +120,53 @@ TEST(ScenePictures, EnvironmentFileIsReadAndSaved) {
     EXPECT_EQ(environment.image->height, 512);
     EXPECT_EQ(environment.intensity, 3);
     EXPECT_EQ(environment.rotation, 1.5f);
-    EXPECT_NE(sceneFileText(loaded->scene, folder).value().find(R"("environment": {"file": "sky.hdr", "intensity": 3, "rotation": 1.5})"), std::string::npos);
+    EXPECT_NE(sceneFileText(loaded->scene, folder)
+                  .value()
+                  .find(R"("environment": {"file": "sky.hdr", "intensity": 3, "rotation": 1.5})"),
+              std::string::npos);
 }
 
 TEST(ScenePictures, TexturesAreReadByFileNameOnceEach) {
     const auto logo = REQUIRE_CONTENT("gltf/khronos/BoxTexturedNonPowerOfTwo/CesiumLogoFlat.png");
     const std::filesystem::path folder = test::scratchDir("scene-textures");
     ASSERT_TRUE(writeFileAtomically(folder / "logo.png", readFile(logo).value()).ok());
-    ASSERT_TRUE(writeFileAtomically(folder / "s.scene.json", R"({"tyndall": 1, "nodes": [{"primitive": {"shape": "box"},
-        "material": {"baseColorTexture": "logo.png", "normalTexture": "logo.png"}}]})").ok());
+    ASSERT_TRUE(writeFileAtomically(folder / "s.scene.json",
+                                    R"({"tyndall": 1, "nodes": [{"primitive": {"shape": "box"},
+        "material": {"baseColorTexture": "logo.png", "normalTexture": "logo.png"}}]})")
+                    .ok());
     const auto loaded = loadScene(folder / "s.scene.json");
     ASSERT_TRUE(loaded.ok()) << loaded.message();
     const Scene& scene = loaded->scene;
     ASSERT_EQ(scene.images.size(), 1u);
-    EXPECT_EQ(scene.images[0].rgba.size(), size_t(scene.images[0].width) * size_t(scene.images[0].height) * 4);
-    EXPECT_EQ(scene.meshes.at(0).tangents.size(), scene.meshes[0].positions.size()) << "a normal texture needs tangents";
+    EXPECT_EQ(scene.images[0].rgba.size(),
+              size_t(scene.images[0].width) * size_t(scene.images[0].height) * 4);
+    EXPECT_EQ(scene.meshes.at(0).tangents.size(), scene.meshes[0].positions.size())
+        << "a normal texture needs tangents";
     ASSERT_TRUE(writeFileAtomically(folder / "logo.png", "no picture").ok());
-    EXPECT_NE(loadScene(folder / "s.scene.json").message().find("/nodes/0/material/baseColorTexture is 'logo.png', but the picture is neither PNG, JPEG nor WebP"),
-              std::string::npos);
+    EXPECT_NE(
+        loadScene(folder / "s.scene.json")
+            .message()
+            .find(
+                "/nodes/0/material/baseColorTexture is 'logo.png', but the picture is neither PNG, JPEG nor WebP"),
+        std::string::npos);
 }
 
 TEST(ScenePictures, BombsAreRefusedByTheirHeader) {
     // A PNG header that claims 16000 x 4000 pixels, and nothing behind it.
     const std::filesystem::path folder = test::scratchDir("scene-bomb");
-    std::string png("\x89PNG\r\n\x1a\n\0\0\0\rIHDR\0\0\x3e\x80\0\0\x0f\xa0\x08\x06\0\0\0\0\0\0\0", 33);
+    std::string png("\x89PNG\r\n\x1a\n\0\0\0\rIHDR\0\0\x3e\x80\0\0\x0f\xa0\x08\x06\0\0\0\0\0\0\0",
+                    33);
     png += std::string(400, 'x');
     ASSERT_TRUE(writeFileAtomically(folder / "bomb.png", png).ok());
-    ASSERT_TRUE(writeFileAtomically(folder / "s.scene.json", R"({"tyndall": 1, "nodes": [{"primitive": {"shape": "box"}, "material": {"baseColorTexture": "bomb.png"}}]})").ok());
+    ASSERT_TRUE(
+        writeFileAtomically(
+            folder / "s.scene.json",
+            R"({"tyndall": 1, "nodes": [{"primitive": {"shape": "box"}, "material": {"baseColorTexture": "bomb.png"}}]})")
+            .ok());
     const auto loaded = loadScene(folder / "s.scene.json");
     ASSERT_FALSE(loaded.ok());
-    EXPECT_NE(loaded.message().find("claims 16000x4000 pixels in 433 bytes"), std::string::npos) << loaded.message();
+    EXPECT_NE(loaded.message().find("claims 16000x4000 pixels in 433 bytes"), std::string::npos)
+        << loaded.message();
 }
 
 } // namespace

@@ -37,7 +37,8 @@ TEST_F(SettingsTest, RegisteringWritesDefaults) {
 }
 
 TEST_F(SettingsTest, TextRoundTripsForEveryType) {
-    for (const char* text : {"example.on=false", "example.steps=7", "example.scale=0.3", "example.mode=exact"}) {
+    for (const char* text :
+         {"example.on=false", "example.steps=7", "example.scale=0.3", "example.mode=exact"}) {
         ASSERT_TRUE(registry.assign(text).ok());
         const std::string key = std::string(text).substr(0, std::string(text).find('='));
         EXPECT_EQ(key + "=" + registry.get(key).value(), text);
@@ -48,12 +49,17 @@ TEST_F(SettingsTest, TextRoundTripsForEveryType) {
 }
 
 TEST_F(SettingsTest, RefusalsSayWhatWouldBeRight) {
-    EXPECT_NE(registry.set("example.step", "3").message().find("did you mean 'example.steps'"), std::string::npos);
+    EXPECT_NE(registry.set("example.step", "3").message().find("did you mean 'example.steps'"),
+              std::string::npos);
     EXPECT_NE(registry.set("example.steps", "0").message().find("1 to 512"), std::string::npos);
-    EXPECT_NE(registry.set("example.steps", "1.5").message().find("whole number"), std::string::npos);
-    EXPECT_NE(registry.set("example.scale", "nan").message().find("not a number"), std::string::npos);
-    EXPECT_NE(registry.set("example.mode", "slow").message().find("fast, exact"), std::string::npos);
-    EXPECT_NE(registry.set("example.on", "maybe").message().find("true or false"), std::string::npos);
+    EXPECT_NE(registry.set("example.steps", "1.5").message().find("whole number"),
+              std::string::npos);
+    EXPECT_NE(registry.set("example.scale", "nan").message().find("not a number"),
+              std::string::npos);
+    EXPECT_NE(registry.set("example.mode", "slow").message().find("fast, exact"),
+              std::string::npos);
+    EXPECT_NE(registry.set("example.on", "maybe").message().find("true or false"),
+              std::string::npos);
     EXPECT_NE(registry.assign("example.on").message().find("KEY=VALUE"), std::string::npos);
     EXPECT_EQ(values.steps, 64) << "a refused value changes nothing";
 }

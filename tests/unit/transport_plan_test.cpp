@@ -13,7 +13,8 @@ const std::vector<Technique> kTechniques = {
 const SceneTraits kEverything{true, true, true, true};
 
 TEST(TransportTerms, NamesRoundTripForEverySet) {
-    for (TermSet set = 0; set <= kAllTerms; ++set) ASSERT_EQ(parseTerms(termNames(set)).value(), set);
+    for (TermSet set = 0; set <= kAllTerms; ++set)
+        ASSERT_EQ(parseTerms(termNames(set)).value(), set);
     EXPECT_EQ(parseTerms("all").value(), kAllTerms);
     EXPECT_EQ(parseTerms("direct,LVVE").value(), kDirectTerms | bit(Term::LVVE));
     EXPECT_NE(parseTerms("LVEE").message().find("did you mean"), std::string::npos);
@@ -27,7 +28,8 @@ TEST(TransportTerms, EveryTermIsDirectOrOnSurfacesOrInMediaAndOnlyOnce) {
 }
 
 TEST(TransportPlan, EveryTermHasAtMostOneOwnerWhateverIsAskedFor) {
-    for (const char* gi : {"auto", "none", "octaves", "lattice", "fogonly", "LVVE=octaves,LSVE=lattice"})
+    for (const char* gi :
+         {"auto", "none", "octaves", "lattice", "fogonly", "LVVE=octaves,LSVE=lattice"})
         for (TermSet wanted : {kAllTerms, kDirectTerms, bit(Term::LVVE), TermSet(0)}) {
             const Result<FramePlan> plan = makePlan(gi, wanted, kTechniques, kEverything);
             ASSERT_TRUE(plan.ok()) << gi;
@@ -52,7 +54,8 @@ TEST(TransportPlan, TermsThatTheSceneCannotHaveAreNotMissing) {
     const SceneTraits vacuum{true, false, false, true};
     const FramePlan plan = makePlan("none", kAllTerms, kTechniques, vacuum).value();
     EXPECT_EQ(plan.missing, terms(Term::LSSE, Term::LXSSE));
-    EXPECT_EQ(makePlan("none", kAllTerms, kTechniques, {}).value().missing, 0u) << "no light, nothing missing";
+    EXPECT_EQ(makePlan("none", kAllTerms, kTechniques, {}).value().missing, 0u)
+        << "no light, nothing missing";
 }
 
 TEST(TransportPlan, AutoTakesTheTechniqueThatClaimsMostAndSaysSo) {
@@ -63,14 +66,24 @@ TEST(TransportPlan, AutoTakesTheTechniqueThatClaimsMostAndSaysSo) {
 }
 
 TEST(TransportPlan, AssignmentsRenderExactlyWhatTheyName) {
-    const FramePlan plan = makePlan("LSE=direct,LVVE=octaves", kAllTerms, kTechniques, kEverything).value();
+    const FramePlan plan =
+        makePlan("LSE=direct,LVVE=octaves", kAllTerms, kTechniques, kEverything).value();
     EXPECT_EQ(plan.rendered, terms(Term::LSE, Term::LVVE));
 }
 
 TEST(TransportPlan, RefusalsSayWhatIsThere) {
-    EXPECT_NE(makePlan("octave", kAllTerms, kTechniques, kEverything).message().find("did you mean 'octaves'"), std::string::npos);
-    EXPECT_NE(makePlan("LSVE=octaves", kAllTerms, kTechniques, kEverything).message().find("claims LVVE,LXVVE"), std::string::npos);
-    EXPECT_NE(makePlan("LVVE=octaves,LVVE=lattice", kAllTerms, kTechniques, kEverything).message().find("two techniques"), std::string::npos);
+    EXPECT_NE(makePlan("octave", kAllTerms, kTechniques, kEverything)
+                  .message()
+                  .find("did you mean 'octaves'"),
+              std::string::npos);
+    EXPECT_NE(makePlan("LSVE=octaves", kAllTerms, kTechniques, kEverything)
+                  .message()
+                  .find("claims LVVE,LXVVE"),
+              std::string::npos);
+    EXPECT_NE(makePlan("LVVE=octaves,LVVE=lattice", kAllTerms, kTechniques, kEverything)
+                  .message()
+                  .find("two techniques"),
+              std::string::npos);
 }
 
 } // namespace

@@ -20,7 +20,9 @@ namespace tyndall::fg {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-double millisecondsSince(Clock::time_point start) { return std::chrono::duration<double, std::milli>(Clock::now() - start).count(); }
+double millisecondsSince(Clock::time_point start) {
+    return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+}
 
 constexpr uint64_t kRingBytes = 4 * 1024 * 1024; // grows where a frame uploads more
 
@@ -29,7 +31,8 @@ constexpr uint64_t kRingBytes = 4 * 1024 * 1024; // grows where a frame uploads 
 class Executor::Impl {
 public:
     Impl(gl::ShaderLibrary& shaders, const ExecutorOptions& options)
-        : options_(options), next_(options), programs_(shaders), ring_("upload ring", kRingBytes), timings_(options.timings) {}
+        : options_(options), next_(options), programs_(shaders), ring_("upload ring", kRingBytes),
+          timings_(options.timings) {}
 
     void beginFrame();
     Result<void> execute();
@@ -58,7 +61,8 @@ public:
     PassTimings timings_;
     TexelCheck texelCheck_;
     std::unordered_set<uint64_t> signed_; // hashes of names of resources that may be negative
-    GlWorld world_{graph_, compiled_, persistent_, storage_, statics_, programs_, framebuffers_, samplers_, ring_, options_.poison};
+    GlWorld world_{graph_,    compiled_,     persistent_, storage_, statics_,
+                   programs_, framebuffers_, samplers_,   ring_,    options_.poison};
     GlPassContext context_{world_};
     FrameReport report_;
     std::vector<uint64_t> reportKeys_; // of report_.passes, for the timings
@@ -157,13 +161,18 @@ void Executor::Impl::prepareStorage(const CompiledPass& pass) {
         const uint32_t held = resource.aliasOf != kNoIndex ? resource.aliasOf : index;
         const ResourceOrigin origin = compiled_.resources[held].origin;
         bool writes = false;
-        for (const ResourceUse& use : compiled_.usesOf(pass)) writes |= use.resource == index && isWrite(use.access);
+        for (const ResourceUse& use : compiled_.usesOf(pass))
+            writes |= use.resource == index && isWrite(use.access);
         // The result of a cached pass is only new where the pass itself, its first user, writes it.
-        const bool fresh = origin == ResourceOrigin::Transient ||
-                           ((origin == ResourceOrigin::Kept || origin == ResourceOrigin::HistoryCurrent) && writes);
+        const bool fresh =
+            origin == ResourceOrigin::Transient ||
+            ((origin == ResourceOrigin::Kept || origin == ResourceOrigin::HistoryCurrent) &&
+             writes);
         const bool clear = compiled_.resources[held].clearFirst;
         if (!clear && !(options_.poison && fresh)) continue;
-        if (!cleared) context_.memoryBarrier(GL_ALL_BARRIER_BITS); // the storage may still be in use under another name
+        if (!cleared)
+            context_.memoryBarrier(
+                GL_ALL_BARRIER_BITS); // the storage may still be in use under another name
         cleared = true;
         options_.poison ? world_.storageOf(index).poison() : world_.storageOf(index).clearToZero();
     }
@@ -174,10 +183,15 @@ Result<void> Executor::Impl::countTexels(uint32_t index) {
     uint32_t last = 0;
     for (const ResourceUse& use : compiled_.usesOf(compiled_.passes[index])) {
         const CompiledResource& resource = compiled_.resources[use.resource];
-        if (!isWrite(use.access) || resource.isBuffer || use.resource == last || !isFloatColor(resource.texture.format)) continue;
+        if (!isWrite(use.access) || resource.isBuffer || use.resource == last ||
+            !isFloatColor(resource.texture.format))
+            continue;
         last = use.resource;
         const bool negative = !signed_.contains(hashName(resource.name));
-        if (Result<void> done = texelCheck_.add(programs_, world_.storageOf(use.resource).texture, negative, index); !done.ok()) return done;
+        if (Result<void> done =
+                texelCheck_.add(programs_, world_.storageOf(use.resource).texture, negative, index);
+            !done.ok())
+            return done;
     }
     return {};
 }
@@ -186,7 +200,8 @@ void Executor::Impl::waitForTimings() {
     timings_.finish();
     for (size_t i = 0; i < report_.passes.size(); ++i) {
         PassReport& pass = report_.passes[i];
-        (pass.status == PassStatus::Ran ? pass.gpuMs : pass.savedMs) = timings_.lastMs(reportKeys_[i]);
+        (pass.status == PassStatus::Ran ? pass.gpuMs : pass.savedMs) =
+            timings_.lastMs(reportKeys_[i]);
     }
     sumTimings();
 }
@@ -204,7 +219,8 @@ void Executor::Impl::report(const CompiledPass& pass, uint64_t key) {
 void Executor::Impl::sumTimings() {
     report_.gpuMs = 0;
     for (const PassReport& pass : report_.passes)
-        if (pass.status == PassStatus::Ran) report_.gpuMs = pass.gpuMs < 0 || report_.gpuMs < 0 ? -1 : report_.gpuMs + pass.gpuMs;
+        if (pass.status == PassStatus::Ran)
+            report_.gpuMs = pass.gpuMs < 0 || report_.gpuMs < 0 ? -1 : report_.gpuMs + pass.gpuMs;
 }
 
 void Executor::Impl::finishReport() {
@@ -227,16 +243,19 @@ void Executor::Impl::finishReport() {
 /// The storage of something that still holds what the frame wrote.
 const Storage& Executor::Impl::readable(uint32_t index, uint32_t version, const char* what) const {
     CHECK(executed_, fmt::format("{} before execute()", what));
-    CHECK(graph_.versionOf(index, version) != kNoIndex, fmt::format("{} of a handle that is not of this frame", what));
+    CHECK(graph_.versionOf(index, version) != kNoIndex,
+          fmt::format("{} of a handle that is not of this frame", what));
     const CompiledResource& resource = compiled_.resources[index];
     const bool stays = resource.slot == kNoIndex || resource.isOutput || options_.keepAll;
-    CHECK(stays, fmt::format("{} of '{}', whose storage other resources use: mark it as an output", what, resource.name));
+    CHECK(stays, fmt::format("{} of '{}', whose storage other resources use: mark it as an output",
+                             what, resource.name));
     return world_.storageOf(index, version);
 }
 
 // --- the public side ---
 
-Executor::Executor(gl::ShaderLibrary& shaders, const ExecutorOptions& options) : impl_(std::make_unique<Impl>(shaders, options)) {}
+Executor::Executor(gl::ShaderLibrary& shaders, const ExecutorOptions& options)
+    : impl_(std::make_unique<Impl>(shaders, options)) {}
 Executor::~Executor() = default;
 
 const ExecutorOptions& Executor::options() const { return impl_->next_; }
@@ -245,28 +264,43 @@ FrameGraph& Executor::beginFrame() {
     impl_->beginFrame();
     return impl_->graph_;
 }
-TextureHandle Executor::findTexture(std::string_view name) const { return impl_->graph_.findTexture(name); }
+TextureHandle Executor::findTexture(std::string_view name) const {
+    return impl_->graph_.findTexture(name);
+}
 Result<void> Executor::execute() { return impl_->execute(); }
 const FrameReport& Executor::report() const { return impl_->report_; }
 void Executor::waitForTimings() { impl_->waitForTimings(); }
 const CompiledGraph& Executor::compiled() const { return impl_->compiled_; }
 void Executor::resetHistory() { impl_->persistent_.resetHistory(); }
 void Executor::forgetCachedResults() { impl_->persistent_.forgetResults(); }
-void Executor::allowNegative(std::string_view resourceName) { impl_->signed_.insert(hashName(resourceName)); }
+void Executor::allowNegative(std::string_view resourceName) {
+    impl_->signed_.insert(hashName(resourceName));
+}
 
 StaticTexture Executor::registerTexture(std::string_view name, gl::Texture&& texture) {
     return impl_->statics_.add(name, std::move(texture), nullptr);
 }
-StaticTexture Executor::registerTexture(std::string_view name, gl::Texture&& texture, const gl::SamplerSpec& sampler) {
+StaticTexture Executor::registerTexture(std::string_view name, gl::Texture&& texture,
+                                        const gl::SamplerSpec& sampler) {
     return impl_->statics_.add(name, std::move(texture), &sampler);
 }
-StaticBuffer Executor::registerBuffer(std::string_view name, gl::Buffer&& buffer) { return impl_->statics_.add(name, std::move(buffer)); }
-StaticGeometry Executor::registerGeometry(std::string_view name, const GeometryDesc& desc) { return impl_->statics_.add(name, desc); }
-void Executor::release(StaticTexture texture) { impl_->statics_.release(texture, impl_->framebuffers_); }
+StaticBuffer Executor::registerBuffer(std::string_view name, gl::Buffer&& buffer) {
+    return impl_->statics_.add(name, std::move(buffer));
+}
+StaticGeometry Executor::registerGeometry(std::string_view name, const GeometryDesc& desc) {
+    return impl_->statics_.add(name, desc);
+}
+void Executor::release(StaticTexture texture) {
+    impl_->statics_.release(texture, impl_->framebuffers_);
+}
 void Executor::release(StaticBuffer buffer) { impl_->statics_.release(buffer); }
 void Executor::release(StaticGeometry geometry) { impl_->statics_.release(geometry); }
-gl::Texture& Executor::texture(StaticTexture texture) { return impl_->statics_.texture(texture.id).storage.texture; }
-gl::Buffer& Executor::buffer(StaticBuffer buffer) { return impl_->statics_.buffer(buffer.id).storage.buffer; }
+gl::Texture& Executor::texture(StaticTexture texture) {
+    return impl_->statics_.texture(texture.id).storage.texture;
+}
+gl::Buffer& Executor::buffer(StaticBuffer buffer) {
+    return impl_->statics_.buffer(buffer.id).storage.buffer;
+}
 
 Image Executor::readImage(TextureHandle handle, int layer, int mip) {
     const Storage& storage = impl_->readable(handle.resource, handle.version, "readImage()");
@@ -274,14 +308,16 @@ Image Executor::readImage(TextureHandle handle, int layer, int mip) {
     const Format format = impl_->graph_.desc(handle).format;
     if (!isIntegerFormat(format)) return gl::takeImage(readBack, layer);
     const gl::TextureRegion region = readBack.region();
-    CHECK(layer >= 0 && layer < region.depth, fmt::format("layer {} of a texture with {}", layer, region.depth));
+    CHECK(layer >= 0 && layer < region.depth,
+          fmt::format("layer {} of a texture with {}", layer, region.depth));
     Image image(region.width, region.height, readBack.channels());
     const std::vector<uint32_t> values = readBack.takeIntegers();
     const bool isSigned = format == Format::R32I;
     const size_t row = size_t(image.width) * size_t(image.channels);
     for (int y = 0; y < image.height; ++y)
         for (size_t x = 0; x < row; ++x) {
-            const uint32_t value = values[(size_t(layer) * size_t(image.height) + size_t(y)) * row + x];
+            const uint32_t value =
+                values[(size_t(layer) * size_t(image.height) + size_t(y)) * row + x];
             image.at(0, image.height - 1 - y)[x] = isSigned ? float(int32_t(value)) : float(value);
         }
     return image;
@@ -291,16 +327,19 @@ std::vector<std::byte> Executor::readTexels(TextureHandle handle, int mip) {
     const Storage& storage = impl_->readable(handle.resource, handle.version, "readTexels()");
     const gl::TextureRegion region = storage.texture.mipRegion(mip);
     const gl::FormatInfo& info = gl::formatInfo(storage.texture.spec().internalFormat);
-    std::vector<std::byte> texels(size_t(region.width) * size_t(region.height) * size_t(region.depth) * info.bytesPerTexel);
+    std::vector<std::byte> texels(size_t(region.width) * size_t(region.height) *
+                                  size_t(region.depth) * info.bytesPerTexel);
     glPixelStorei(GL_PACK_ALIGNMENT, 1);
-    glGetTextureImage(storage.texture.id(), mip, info.transferFormat, info.transferType, GLsizei(texels.size()), texels.data());
+    glGetTextureImage(storage.texture.id(), mip, info.transferFormat, info.transferType,
+                      GLsizei(texels.size()), texels.data());
     glPixelStorei(GL_PACK_ALIGNMENT, 4);
     return texels;
 }
 
 std::vector<std::byte> Executor::readBuffer(BufferHandle handle) {
     const Storage& storage = impl_->readable(handle.resource, handle.version, "readBuffer()");
-    std::vector<std::byte> bytes(size_t(impl_->graph_.isAbsent(handle) ? 0 : impl_->graph_.desc(handle).bytes));
+    std::vector<std::byte> bytes(
+        size_t(impl_->graph_.isAbsent(handle) ? 0 : impl_->graph_.desc(handle).bytes));
     if (!bytes.empty()) storage.buffer.read(0, bytes.data(), bytes.size());
     return bytes;
 }

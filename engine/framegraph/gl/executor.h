@@ -55,12 +55,13 @@ struct ExecutorOptions {
 struct PassReport {
     std::string_view name;
     PassStatus status;
-    std::string_view reason;      // why it did not run; empty where it ran
-    double gpuMs = -1;            // the last measurement of this pass; -1: none yet. Lags some frames behind
-    double cpuMs = 0;             // time to record it in this frame
-    double savedMs = -1;          // of a pass that did not run: the last time measured for it; -1: none
+    std::string_view reason; // why it did not run; empty where it ran
+    double gpuMs = -1;   // the last measurement of this pass; -1: none yet. Lags some frames behind
+    double cpuMs = 0;    // time to record it in this frame
+    double savedMs = -1; // of a pass that did not run: the last time measured for it; -1: none
     uint64_t nonFiniteTexels = 0; // with ExecutorOptions::checkTexels
-    uint64_t negativeTexels = 0;  // likewise; only of unsigned quantities, see Executor::allowNegative
+    uint64_t negativeTexels =
+        0; // likewise; only of unsigned quantities, see Executor::allowNegative
 };
 
 /// One executed frame. Rewritten by execute().
@@ -68,20 +69,29 @@ struct FrameReport {
     std::vector<PassReport> passes; // in order of declaration
     double compileMs = 0;           // CPU time of FrameGraph compilation
     double cpuMs = 0;               // CPU time of execute(), compilation included
-    double gpuMs = -1;              // sum over the passes that ran, of their last measurements; -1: not all measured yet
-    uint64_t gpuBytes = 0;          // all storage alive in this executor: pool, kept results, persistent, static, rings
+    double gpuMs =
+        -1; // sum over the passes that ran, of their last measurements; -1: not all measured yet
+    uint64_t gpuBytes =
+        0; // all storage alive in this executor: pool, kept results, persistent, static, rings
     uint64_t nonFiniteTexels = 0, negativeTexels = 0;
-    uint32_t barriers = 0;          // glMemoryBarrier calls
+    uint32_t barriers = 0;                      // glMemoryBarrier calls
     uint32_t liveTextures = 0, liveBuffers = 0; // objects that this executor holds
 };
 
-enum class AttributeType : uint32_t { Float32 = 0, Unorm8 = 1, Unorm16 = 2, Snorm8 = 3, Snorm16 = 4, UInt32 = 5 };
+enum class AttributeType : uint32_t {
+    Float32 = 0,
+    Unorm8 = 1,
+    Unorm16 = 2,
+    Snorm8 = 3,
+    Snorm16 = 4,
+    UInt32 = 5
+};
 
 struct VertexAttribute {
     uint32_t location;
     uint32_t components; // 1 to 4
     AttributeType type;
-    uint32_t offset;     // in the vertex, bytes
+    uint32_t offset; // in the vertex, bytes
 };
 
 /// Interleaved vertices and an optional list of 32-bit indices, both in registered buffers, which must outlive it.
@@ -129,7 +139,8 @@ public:
     // Static things: immutable in the eyes of the graph. Ids are never reused.
     StaticTexture registerTexture(std::string_view name, gl::Texture&& texture);
     /// As above, read through this sampler wherever it is bound (without one: bilinear on level 0, clamped).
-    StaticTexture registerTexture(std::string_view name, gl::Texture&& texture, const gl::SamplerSpec& sampler);
+    StaticTexture registerTexture(std::string_view name, gl::Texture&& texture,
+                                  const gl::SamplerSpec& sampler);
     StaticBuffer registerBuffer(std::string_view name, gl::Buffer&& buffer);
     StaticGeometry registerGeometry(std::string_view name, const GeometryDesc& desc);
     void release(StaticTexture texture);

@@ -7,9 +7,12 @@
 namespace tyndall::fg {
 
 GLenum glFormat(Format format) {
-    static constexpr GLenum kFormats[] = {GL_R8,      GL_RGBA8,    GL_SRGB8_ALPHA8, GL_RG16_SNORM, GL_RGBA16,         GL_R16F,
-                                          GL_RG16F,   GL_RGBA16F,  GL_R32F,         GL_RG32F,      GL_RGBA32F,        GL_R16UI,
-                                          GL_R32UI,   GL_RG32UI,   GL_RGBA32UI,     GL_R32I,       GL_R11F_G11F_B10F, GL_DEPTH_COMPONENT32F};
+    static constexpr GLenum kFormats[] = {GL_R8,         GL_RGBA8,          GL_SRGB8_ALPHA8,
+                                          GL_RG16_SNORM, GL_RGBA16,         GL_R16F,
+                                          GL_RG16F,      GL_RGBA16F,        GL_R32F,
+                                          GL_RG32F,      GL_RGBA32F,        GL_R16UI,
+                                          GL_R32UI,      GL_RG32UI,         GL_RGBA32UI,
+                                          GL_R32I,       GL_R11F_G11F_B10F, GL_DEPTH_COMPONENT32F};
     CHECK(size_t(format) < std::size(kFormats), "not a format");
     return kFormats[size_t(format)];
 }
@@ -24,7 +27,8 @@ GLenum glTarget(TextureKind kind) {
 }
 
 gl::TextureSpec glSpec(const TextureDesc& desc) {
-    return {glTarget(desc.kind), glFormat(desc.format), desc.width, desc.height, desc.depth, desc.mips};
+    return {
+        glTarget(desc.kind), glFormat(desc.format), desc.width, desc.height, desc.depth, desc.mips};
 }
 
 bool isFloatColor(Format format) {
@@ -47,8 +51,11 @@ gl::SamplerSpec samplerFor(GLenum internalFormat, int mips, bool shadow) {
         spec.compare = GL_GEQUAL;
         return spec;
     }
-    gl::SamplerSpec spec = formatClass == gl::FormatClass::Float ? gl::linearClamp() : gl::nearestClamp();
-    if (mips > 1) spec.minFilter = formatClass == gl::FormatClass::Float ? GL_LINEAR_MIPMAP_LINEAR : GL_NEAREST_MIPMAP_NEAREST;
+    gl::SamplerSpec spec =
+        formatClass == gl::FormatClass::Float ? gl::linearClamp() : gl::nearestClamp();
+    if (mips > 1)
+        spec.minFilter = formatClass == gl::FormatClass::Float ? GL_LINEAR_MIPMAP_LINEAR
+                                                               : GL_NEAREST_MIPMAP_NEAREST;
     return spec;
 }
 
@@ -57,8 +64,8 @@ bool isShadowSampler(GLenum uniformType) {
 }
 
 bool isSampler2D(GLenum uniformType) {
-    return uniformType == GL_SAMPLER_2D || uniformType == GL_SAMPLER_2D_SHADOW || uniformType == GL_INT_SAMPLER_2D ||
-           uniformType == GL_UNSIGNED_INT_SAMPLER_2D;
+    return uniformType == GL_SAMPLER_2D || uniformType == GL_SAMPLER_2D_SHADOW ||
+           uniformType == GL_INT_SAMPLER_2D || uniformType == GL_UNSIGNED_INT_SAMPLER_2D;
 }
 
 } // namespace tyndall::fg

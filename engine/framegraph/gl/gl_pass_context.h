@@ -31,7 +31,9 @@ struct GlWorld {
     const bool& poison;
 
     /// The storage that holds the resource in this frame. CHECKs that there is one.
-    [[nodiscard]] Storage& storageOf(uint32_t resource) const { return storageAt(placeOf(compiled, resource), resource); }
+    [[nodiscard]] Storage& storageOf(uint32_t resource) const {
+        return storageAt(placeOf(compiled, resource), resource);
+    }
     [[nodiscard]] Storage& storageOf(uint32_t resource, uint32_t version) const {
         return storageAt(placeOf(graph, compiled, resource, version), resource);
     }
@@ -51,7 +53,8 @@ public:
     void memoryBarrier(uint32_t bits);
 
     void beginCompute(const char* shader, const Define* defines, uint32_t defineCount) override;
-    void beginRaster(const char* vertexShader, const char* fragmentShader, const Define* defines, uint32_t defineCount) override;
+    void beginRaster(const char* vertexShader, const char* fragmentShader, const Define* defines,
+                     uint32_t defineCount) override;
     void bindTexture(const char* name, TextureHandle handle, int32_t mip, int32_t layer) override;
     void bindBuffer(const char* name, BufferHandle handle) override;
     void bindStaticTexture(const char* name, StaticTexture texture) override;
@@ -66,17 +69,25 @@ public:
     void viewport(int32_t x, int32_t y, int32_t width, int32_t height) override;
     void rasterState(const RasterState& state) override;
     void draw(uint32_t vertexCount, uint32_t instanceCount, uint32_t firstVertex) override;
-    void drawGeometry(StaticGeometry geometry, uint32_t firstIndex, uint32_t indexCount, uint32_t instanceCount,
-                      uint32_t baseInstance) override;
+    void drawGeometry(StaticGeometry geometry, uint32_t firstIndex, uint32_t indexCount,
+                      uint32_t instanceCount, uint32_t baseInstance) override;
     void clearTexture(TextureHandle handle, const float rgba[4]) override;
     void clearBuffer(BufferHandle handle, uint32_t value) override;
     void copyTexture(TextureHandle from, TextureHandle to) override;
     void upload(BufferHandle handle, uint64_t byteOffset, const void* data, size_t bytes) override;
     void barrier(Access next) override;
-    [[nodiscard]] TextureDesc desc(TextureHandle handle) const override { return world_.graph.desc(handle); }
-    [[nodiscard]] BufferDesc desc(BufferHandle handle) const override { return world_.graph.desc(handle); }
-    [[nodiscard]] bool isAbsent(TextureHandle handle) const override { return world_.graph.isAbsent(handle); }
-    [[nodiscard]] bool isAbsent(BufferHandle handle) const override { return world_.graph.isAbsent(handle); }
+    [[nodiscard]] TextureDesc desc(TextureHandle handle) const override {
+        return world_.graph.desc(handle);
+    }
+    [[nodiscard]] BufferDesc desc(BufferHandle handle) const override {
+        return world_.graph.desc(handle);
+    }
+    [[nodiscard]] bool isAbsent(TextureHandle handle) const override {
+        return world_.graph.isAbsent(handle);
+    }
+    [[nodiscard]] bool isAbsent(BufferHandle handle) const override {
+        return world_.graph.isAbsent(handle);
+    }
 
 private:
     void begin(const char* first, const char* second, const Define* defines, uint32_t defineCount);
@@ -86,8 +97,10 @@ private:
     void checkAllBound();
     void check(uint32_t resource, uint32_t version, Touch touch, std::string_view place) const;
     [[nodiscard]] bool writesByShader(uint32_t resource) const;
-    void bindSampler(const gl::ProgramResource& sampler, Storage& storage, const gl::SamplerSpec* spec, int32_t mip, int32_t layer);
-    void bindImage(const gl::ProgramResource& image, const Storage& storage, bool writes, int32_t mip, int32_t layer);
+    void bindSampler(const gl::ProgramResource& sampler, Storage& storage,
+                     const gl::SamplerSpec* spec, int32_t mip, int32_t layer);
+    void bindImage(const gl::ProgramResource& image, const Storage& storage, bool writes,
+                   int32_t mip, int32_t layer);
     void bindBlock(const gl::ProgramResource& block, const gl::Buffer& buffer, uint64_t bytes);
     void aroundClear(uint32_t resource, bool isBuffer, bool before);
     void prepareDraw(GLuint vertexArray);

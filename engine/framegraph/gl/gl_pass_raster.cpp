@@ -19,19 +19,25 @@ void enable(GLenum capability, bool on) { on ? glEnable(capability) : glDisable(
 
 void GlPassContext::targets(const Target* colors, uint32_t colorCount, const Target* depth) {
     if (!program_) return;
-    CHECK(colorCount <= gl::FramebufferCache::kMostColors, fmt::format("pass '{}' draws to {} colours", passName(), colorCount));
+    CHECK(colorCount <= gl::FramebufferCache::kMostColors,
+          fmt::format("pass '{}' draws to {} colours", passName(), colorCount));
     const auto attachment = [&](const Target& target, Touch touch, const char* place) {
         check(target.texture.resource, target.texture.version, touch, place);
-        CHECK(!isAbsent(target.texture), fmt::format("pass '{}' draws to something absent", passName()));
-        const gl::Texture& texture = world_.storageOf(target.texture.resource, target.texture.version).texture;
-        return gl::Attachment{&texture, target.mip, texture.spec().target == GL_TEXTURE_2D ? -1 : target.layer};
+        CHECK(!isAbsent(target.texture),
+              fmt::format("pass '{}' draws to something absent", passName()));
+        const gl::Texture& texture =
+            world_.storageOf(target.texture.resource, target.texture.version).texture;
+        return gl::Attachment{&texture, target.mip,
+                              texture.spec().target == GL_TEXTURE_2D ? -1 : target.layer};
     };
     std::array<gl::Attachment, gl::FramebufferCache::kMostColors> attachments;
-    for (uint32_t i = 0; i < colorCount; ++i) attachments[i] = attachment(colors[i], Touch::ColorAttachment, "color target");
+    for (uint32_t i = 0; i < colorCount; ++i)
+        attachments[i] = attachment(colors[i], Touch::ColorAttachment, "color target");
     gl::Attachment depthAttachment;
     if (depth) depthAttachment = attachment(*depth, Touch::DepthTest, "depth target");
     depthTarget_ = depth ? depth->texture : TextureHandle{};
-    const GLuint framebuffer = world_.framebuffers.get({attachments.data(), colorCount}, depth ? &depthAttachment : nullptr);
+    const GLuint framebuffer = world_.framebuffers.get({attachments.data(), colorCount},
+                                                       depth ? &depthAttachment : nullptr);
     glBindFramebuffer(GL_FRAMEBUFFER, framebuffer);
     hasTargets_ = true;
     const gl::Attachment& first = colorCount > 0 ? attachments[0] : depthAttachment;
@@ -52,12 +58,15 @@ void GlPassContext::applyState() {
     if (stateApplied_) return;
     stateApplied_ = true;
     const bool depthWrites = state_.depth == DepthMode::TestAndWrite;
-    if (depthWrites && depthTarget_) check(depthTarget_.resource, depthTarget_.version, Touch::DepthAttachment, "depth target");
+    if (depthWrites && depthTarget_)
+        check(depthTarget_.resource, depthTarget_.version, Touch::DepthAttachment, "depth target");
     enable(GL_CULL_FACE, state_.cull != CullMode::None);
-    if (state_.cull != CullMode::None) glCullFace(state_.cull == CullMode::Back ? GL_BACK : GL_FRONT);
+    if (state_.cull != CullMode::None)
+        glCullFace(state_.cull == CullMode::Back ? GL_BACK : GL_FRONT);
     glFrontFace(state_.frontFaceClockwise ? GL_CW : GL_CCW);
     enable(GL_BLEND, state_.blend != BlendMode::Replace);
-    if (state_.blend != BlendMode::Replace) glBlendFunc(GL_ONE, state_.blend == BlendMode::Add ? GL_ONE : GL_ONE_MINUS_SRC_ALPHA);
+    if (state_.blend != BlendMode::Replace)
+        glBlendFunc(GL_ONE, state_.blend == BlendMode::Add ? GL_ONE : GL_ONE_MINUS_SRC_ALPHA);
     enable(GL_DEPTH_TEST, state_.depth != DepthMode::Off);
     glDepthMask(depthWrites ? GL_TRUE : GL_FALSE);
     if (state_.depth == DepthMode::TestEqual)
@@ -82,8 +91,10 @@ GLenum GlPassContext::topology() const {
 }
 
 void GlPassContext::prepareDraw(GLuint vertexArray) {
-    CHECK(!program_->isCompute(), fmt::format("pass '{}' draws with '{}', a compute shader", passName(), program_->name()));
-    CHECK(hasTargets_, fmt::format("pass '{}' draws with '{}' without targets", passName(), program_->name()));
+    CHECK(!program_->isCompute(),
+          fmt::format("pass '{}' draws with '{}', a compute shader", passName(), program_->name()));
+    CHECK(hasTargets_,
+          fmt::format("pass '{}' draws with '{}' without targets", passName(), program_->name()));
     checkAllBound();
     applyState();
     glBindVertexArray(vertexArray);
@@ -92,20 +103,24 @@ void GlPassContext::prepareDraw(GLuint vertexArray) {
 void GlPassContext::draw(uint32_t vertexCount, uint32_t instanceCount, uint32_t firstVertex) {
     if (!program_ || vertexCount == 0 || instanceCount == 0) return;
     prepareDraw(emptyVertexArray_.id());
-    glDrawArraysInstanced(topology(), GLint(firstVertex), GLsizei(vertexCount), GLsizei(instanceCount));
+    glDrawArraysInstanced(topology(), GLint(firstVertex), GLsizei(vertexCount),
+                          GLsizei(instanceCount));
 }
 
-void GlPassContext::drawGeometry(StaticGeometry geometry, uint32_t firstIndex, uint32_t indexCount, uint32_t instanceCount,
-                                 uint32_t baseInstance) {
+void GlPassContext::drawGeometry(StaticGeometry geometry, uint32_t firstIndex, uint32_t indexCount,
+                                 uint32_t instanceCount, uint32_t baseInstance) {
     if (!program_ || indexCount == 0 || instanceCount == 0) return;
     const StaticGeometryEntry& entry = world_.statics.geometry(geometry.id);
     prepareDraw(entry.vertexArray.id());
     if (!entry.indexed) {
-        glDrawArraysInstancedBaseInstance(topology(), GLint(firstIndex), GLsizei(indexCount), GLsizei(instanceCount), baseInstance);
+        glDrawArraysInstancedBaseInstance(topology(), GLint(firstIndex), GLsizei(indexCount),
+                                          GLsizei(instanceCount), baseInstance);
         return;
     }
-    const uintptr_t offset = uintptr_t(entry.indexOffsetBytes) + uintptr_t(firstIndex) * sizeof(uint32_t);
-    glDrawElementsInstancedBaseInstance(topology(), GLsizei(indexCount), GL_UNSIGNED_INT, reinterpret_cast<const void*>(offset),
+    const uintptr_t offset =
+        uintptr_t(entry.indexOffsetBytes) + uintptr_t(firstIndex) * sizeof(uint32_t);
+    glDrawElementsInstancedBaseInstance(topology(), GLsizei(indexCount), GL_UNSIGNED_INT,
+                                        reinterpret_cast<const void*>(offset),
                                         GLsizei(instanceCount), baseInstance);
 }
 
@@ -125,8 +140,11 @@ void GlPassContext::clearTexture(TextureHandle handle, const float rgba[4]) {
     gl::Texture& texture = world_.storageOf(handle.resource, handle.version).texture;
     aroundClear(handle.resource, false, true);
     if (isIntegerFormat(desc(handle).format)) {
-        const auto integer = [](float value) { return value < 0 ? uint32_t(int32_t(value)) : uint32_t(value); };
-        texture.clearInteger(integer(rgba[0]), integer(rgba[1]), integer(rgba[2]), integer(rgba[3]));
+        const auto integer = [](float value) {
+            return value < 0 ? uint32_t(int32_t(value)) : uint32_t(value);
+        };
+        texture.clearInteger(integer(rgba[0]), integer(rgba[1]), integer(rgba[2]),
+                             integer(rgba[3]));
     } else {
         texture.clear(rgba[0], rgba[1], rgba[2], rgba[3]);
     }
@@ -146,7 +164,9 @@ void GlPassContext::copyTexture(TextureHandle from, TextureHandle to) {
     const TextureDesc source = desc(from), destination = desc(to);
     TextureDesc sameMips = source;
     sameMips.mips = destination.mips;
-    CHECK(sameMips == destination, fmt::format("pass '{}' copies between textures of different sizes or formats", passName()));
+    CHECK(
+        sameMips == destination,
+        fmt::format("pass '{}' copies between textures of different sizes or formats", passName()));
     Storage& target = world_.storageOf(to.resource, to.version);
     if (isAbsent(from)) return world_.poison ? target.poison() : target.clearToZero();
     const Storage& origin = world_.storageOf(from.resource, from.version);
@@ -154,20 +174,23 @@ void GlPassContext::copyTexture(TextureHandle from, TextureHandle to) {
     for (int mip = 0; mip < std::min(source.mips, destination.mips); ++mip) {
         const gl::TextureRegion size = origin.texture.mipRegion(mip);
         const GLenum kind = glTarget(source.kind);
-        glCopyImageSubData(origin.texture.id(), kind, mip, 0, 0, 0, target.texture.id(), kind, mip, 0, 0, 0, size.width, size.height,
-                           size.depth);
+        glCopyImageSubData(origin.texture.id(), kind, mip, 0, 0, 0, target.texture.id(), kind, mip,
+                           0, 0, 0, size.width, size.height, size.depth);
     }
     aroundClear(to.resource, false, false);
 }
 
-void GlPassContext::upload(BufferHandle handle, uint64_t byteOffset, const void* data, size_t bytes) {
+void GlPassContext::upload(BufferHandle handle, uint64_t byteOffset, const void* data,
+                           size_t bytes) {
     check(handle.resource, handle.version, Touch::TransferWrite, "upload");
     if (bytes == 0) return;
     CHECK(byteOffset + bytes <= desc(handle).bytes,
-          fmt::format("pass '{}' uploads {} bytes at {} into a buffer of {}", passName(), bytes, byteOffset, desc(handle).bytes));
+          fmt::format("pass '{}' uploads {} bytes at {} into a buffer of {}", passName(), bytes,
+                      byteOffset, desc(handle).bytes));
     const gl::UploadRing::Slice slice = world_.ring.upload(data, bytes, 16);
     aroundClear(handle.resource, true, true);
-    world_.storageOf(handle.resource, handle.version).buffer.copyFrom(slice.buffer, slice.offset, byteOffset, bytes);
+    world_.storageOf(handle.resource, handle.version)
+        .buffer.copyFrom(slice.buffer, slice.offset, byteOffset, bytes);
     aroundClear(handle.resource, true, false);
 }
 

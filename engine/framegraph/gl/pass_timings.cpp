@@ -14,7 +14,8 @@ void PassTimings::beginFrame() {
     ++frame_;
     if (!enabled_) return;
     // A frame that the timer leaves out uses the same place again, so that those that wait keep theirs.
-    if (frames_[current_].frame != 0 && timer_.framesUntimed() == untimed_) current_ = (current_ + 1) % frames_.size();
+    if (frames_[current_].frame != 0 && timer_.framesUntimed() == untimed_)
+        current_ = (current_ + 1) % frames_.size();
     untimed_ = timer_.framesUntimed();
     frames_[current_].frame = frame_;
     frames_[current_].keys.clear();

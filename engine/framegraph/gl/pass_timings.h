@@ -44,9 +44,10 @@ private:
         uint64_t frame = 0;
         std::vector<uint64_t> keys; // of its spans
     };
-    std::array<FrameKeys, kFramesInFlight + 1> frames_; // those that wait, and the one being recorded
+    std::array<FrameKeys, kFramesInFlight + 1>
+        frames_; // those that wait, and the one being recorded
     size_t current_ = 0;
-    std::unordered_map<uint64_t, Seen> seen_;                     // by name
+    std::unordered_map<uint64_t, Seen> seen_; // by name
     std::unordered_map<uint64_t, double> lastMs_;
 };
 

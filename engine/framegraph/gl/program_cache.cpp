@@ -7,10 +7,11 @@
 
 namespace tyndall::fg {
 
-Result<const gl::Program*> ProgramCache::find(std::string_view pass, const char* first, const char* second,
-                                              std::span<const Define> defines) {
+Result<const gl::Program*> ProgramCache::find(std::string_view pass, const char* first,
+                                              const char* second, std::span<const Define> defines) {
     uint64_t key = mixHash(hashName(first), second ? hashName(second) : 0);
-    for (const Define& define : defines) key = mixHash(mixHash(key, hashName(define.name)), uint32_t(define.value));
+    for (const Define& define : defines)
+        key = mixHash(mixHash(key, hashName(define.name)), uint32_t(define.value));
     // The library keeps a program's address when it is made anew, so what was found once stays good.
     if (const auto found = programs_.find(key); found != programs_.end()) return found->second;
 
@@ -19,7 +20,8 @@ Result<const gl::Program*> ProgramCache::find(std::string_view pass, const char*
     if (second) request.files.emplace_back(second);
     for (const Define& define : defines) request.defines.push_back({define.name, define.value});
     CHECK(library_.isListed(request),
-          fmt::format("pass '{}' asks for '{}', which shaders/variants.txt does not list", pass, request.describe()));
+          fmt::format("pass '{}' asks for '{}', which shaders/variants.txt does not list", pass,
+                      request.describe()));
     Result<const gl::Program*> program = library_.program(request);
     if (program.ok()) programs_.emplace(key, *program);
     return program;

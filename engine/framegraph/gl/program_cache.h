@@ -19,7 +19,8 @@ public:
 
     /// `second` is the fragment shader, or null for compute. CHECKs that shaders/variants.txt lists the program; `pass` is named
     /// where it does not. Errors: it does not compile and has no last good version.
-    Result<const gl::Program*> find(std::string_view pass, const char* first, const char* second, std::span<const Define> defines);
+    Result<const gl::Program*> find(std::string_view pass, const char* first, const char* second,
+                                    std::span<const Define> defines);
 
 private:
     gl::ShaderLibrary& library_;

@@ -9,10 +9,10 @@
 namespace tyndall::fg {
 namespace {
 
-template <typename Map>
-auto& entryOf(Map& map, uint32_t id, const char* kind) {
+template <typename Map> auto& entryOf(Map& map, uint32_t id, const char* kind) {
     const auto found = map.find(id);
-    CHECK(found != map.end(), fmt::format("{} {} is not registered with this executor, or was released", kind, id));
+    CHECK(found != map.end(),
+          fmt::format("{} {} is not registered with this executor, or was released", kind, id));
     return *found->second;
 }
 
@@ -36,7 +36,8 @@ GlType glType(AttributeType type) {
 
 } // namespace
 
-StaticTexture StaticTable::add(std::string_view name, gl::Texture&& texture, const gl::SamplerSpec* sampler) {
+StaticTexture StaticTable::add(std::string_view name, gl::Texture&& texture,
+                               const gl::SamplerSpec* sampler) {
     CHECK(texture, fmt::format("static texture '{}' is empty", name));
     auto entry = std::make_unique<StaticTextureEntry>();
     entry->name = name;
@@ -93,9 +94,15 @@ void StaticTable::release(StaticGeometry geometry) {
     CHECK(geometries_.erase(geometry.id) == 1, "release() of a geometry that is not registered");
 }
 
-StaticTextureEntry& StaticTable::texture(uint32_t id) { return entryOf(textures_, id, "static texture"); }
-StaticBufferEntry& StaticTable::buffer(uint32_t id) { return entryOf(buffers_, id, "static buffer"); }
-StaticGeometryEntry& StaticTable::geometry(uint32_t id) { return entryOf(geometries_, id, "geometry"); }
+StaticTextureEntry& StaticTable::texture(uint32_t id) {
+    return entryOf(textures_, id, "static texture");
+}
+StaticBufferEntry& StaticTable::buffer(uint32_t id) {
+    return entryOf(buffers_, id, "static buffer");
+}
+StaticGeometryEntry& StaticTable::geometry(uint32_t id) {
+    return entryOf(geometries_, id, "geometry");
+}
 
 StorageSet::Totals StaticTable::totals() const {
     StorageSet::Totals totals;

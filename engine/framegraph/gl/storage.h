@@ -31,7 +31,9 @@ public:
     void clearToZero();
     /// All texels and bytes become what nobody should read: NaN, or all bits set.
     void poison();
-    [[nodiscard]] uint64_t bytes() const { return texture ? uint64_t(texture.bytes()) : buffer.bytes(); }
+    [[nodiscard]] uint64_t bytes() const {
+        return texture ? uint64_t(texture.bytes()) : buffer.bytes();
+    }
 
 private:
     struct View {
@@ -62,7 +64,8 @@ public:
     Storage& absentTexture(const TextureDesc& desc, bool poison);
     /// kAbsentBytes of zeros, or of set bits.
     Storage& absentBuffer(bool poison);
-    static constexpr uint64_t kAbsentBytes = 64 * 1024; // no uniform block is larger on every driver
+    static constexpr uint64_t kAbsentBytes =
+        64 * 1024; // no uniform block is larger on every driver
 
     struct Totals {
         uint64_t bytes = 0;

@@ -11,16 +11,19 @@ void TexelCheck::begin(size_t passCount) {
     counts_.clear(0);
 }
 
-Result<void> TexelCheck::add(ProgramCache& programs, const gl::Texture& texture, bool countNegative, size_t pass) {
+Result<void> TexelCheck::add(ProgramCache& programs, const gl::Texture& texture, bool countNegative,
+                             size_t pass) {
     const gl::TextureSpec& spec = texture.spec();
     const int kind = spec.target == GL_TEXTURE_3D ? 2 : spec.target == GL_TEXTURE_2D_ARRAY ? 1 : 0;
     const Define defines[] = {{"KIND", kind}};
-    Result<const gl::Program*> found = programs.find("texel check", "common/count_invalid.comp", nullptr, defines);
+    Result<const gl::Program*> found =
+        programs.find("texel check", "common/count_invalid.comp", nullptr, defines);
     if (!found.ok()) return found.error();
     const gl::Program& program = **found;
     const gl::ProgramResource* image = program.find("image");
     const gl::ProgramResource* counts = program.find("Counts");
-    CHECK(image != nullptr && counts != nullptr, "common/count_invalid.comp lacks 'image' or 'Counts'");
+    CHECK(image != nullptr && counts != nullptr,
+          "common/count_invalid.comp lacks 'image' or 'Counts'");
     // What the pass wrote by shaders must be seen, and the counters be cleared.
     glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT);
     glUseProgram(program.id());
@@ -32,7 +35,8 @@ Result<void> TexelCheck::add(ProgramCache& programs, const gl::Texture& texture,
     for (int mip = 0; mip < spec.mips; ++mip) {
         const gl::TextureRegion size = texture.mipRegion(mip);
         program.set("level", mip);
-        glDispatchCompute(GLuint(size.width + 7) / 8, GLuint(size.height + 7) / 8, GLuint(size.depth));
+        glDispatchCompute(GLuint(size.width + 7) / 8, GLuint(size.height + 7) / 8,
+                          GLuint(size.depth));
     }
     return {};
 }

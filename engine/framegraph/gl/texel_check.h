@@ -20,7 +20,8 @@ public:
     /// Makes room for counts of so many passes and sets them to 0.
     void begin(size_t passCount);
     /// Adds the texels of all levels of a float texture to the counts of `pass`. Changes program and bindings.
-    Result<void> add(ProgramCache& programs, const gl::Texture& texture, bool countNegative, size_t pass);
+    Result<void> add(ProgramCache& programs, const gl::Texture& texture, bool countNegative,
+                     size_t pass);
     /// Waits for the GPU.
     const std::vector<Counts>& read();
 

@@ -33,7 +33,8 @@ struct GridRecord {
     uint64_t activeVoxels = 0;
     int32_t first[3] = {0, 0, 0};
     int32_t last[3] = {-1, -1, -1};
-    double worldFromIndex[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}; // column after column
+    double worldFromIndex[16] = {1, 0, 0, 0, 0, 1, 0, 0,
+                                 0, 0, 1, 0, 0, 0, 0, 1}; // column after column
     uint32_t affine = 1;
     uint32_t importable = 0;
     uint32_t nameBytes = 0, typeBytes = 0, classBytes = 0;
@@ -56,8 +57,9 @@ inline constexpr uint32_t kTilesPerMessage = 16384;
 static_assert(kTilesPerMessage * sizeof(TileRecord) <= kMaximumMessageBytes);
 
 enum class CommandType : uint32_t {
-    Read = 1,    // answered by Blocks, Tiles …, GridEnd
-    Measure = 2, // answered by the Grid again, with voxel count and box even where the file does not record them
+    Read = 1, // answered by Blocks, Tiles …, GridEnd
+    Measure =
+        2, // answered by the Grid again, with voxel count and box even where the file does not record them
 };
 
 struct Command {

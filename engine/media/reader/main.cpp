@@ -35,7 +35,8 @@ constexpr int kSocket = STDIN_FILENO;
 void setLimit(decltype(RLIMIT_CORE) resource, uint64_t value) {
     rlimit limit{};
     if (getrlimit(resource, &limit) != 0) return;
-    limit.rlim_cur = limit.rlim_max == RLIM_INFINITY ? rlim_t(value) : std::min(rlim_t(value), limit.rlim_max);
+    limit.rlim_cur =
+        limit.rlim_max == RLIM_INFINITY ? rlim_t(value) : std::min(rlim_t(value), limit.rlim_max);
     setrlimit(resource, &limit);
 }
 
@@ -59,7 +60,8 @@ void sendGrid(VoxelSink& sink, GridDescription grid) {
     grid.record.nameBytes = shorten(grid.name);
     grid.record.typeBytes = shorten(grid.type);
     grid.record.classBytes = shorten(grid.gridClass);
-    sink.send(stream::MessageType::Grid, &grid.record, sizeof grid.record, grid.name + grid.type + grid.gridClass);
+    sink.send(stream::MessageType::Grid, &grid.record, sizeof grid.record,
+              grid.name + grid.type + grid.gridClass);
 }
 
 std::unique_ptr<GridSource> openSource(const std::string& path) {
@@ -73,9 +75,11 @@ std::unique_ptr<GridSource> openSource(const std::string& path) {
 void serve(const std::string& path, VoxelSink& sink) {
     const std::unique_ptr<GridSource> source = openSource(path);
     if (!source) throw std::runtime_error("it begins like neither an OpenVDB nor a NanoVDB file");
-    sink.send(stream::MessageType::Hello, &stream::kStreamVersion, sizeof stream::kStreamVersion, source->format());
+    sink.send(stream::MessageType::Hello, &stream::kStreamVersion, sizeof stream::kStreamVersion,
+              source->format());
     std::vector<GridDescription> grids = source->list();
-    if (grids.size() > stream::kMaximumGrids) throw std::runtime_error("it claims to hold " + std::to_string(grids.size()) + " grids");
+    if (grids.size() > stream::kMaximumGrids)
+        throw std::runtime_error("it claims to hold " + std::to_string(grids.size()) + " grids");
     for (const GridDescription& grid : grids) sendGrid(sink, grid);
     sink.send(stream::MessageType::ListEnd, nullptr, 0);
 
@@ -94,13 +98,17 @@ void serve(const std::string& path, VoxelSink& sink) {
 
 int main(int argc, char** argv) {
     if (argc != 1 + stream::kReaderArguments) {
-        std::fputs("tyndall-grid-reader is started by tyndall's own programs; it is not of use alone.\n", stderr);
+        std::fputs(
+            "tyndall-grid-reader is started by tyndall's own programs; it is not of use alone.\n",
+            stderr);
         return 2;
     }
     prctl(PR_SET_PDEATHSIG, SIGKILL);
     setLimit(RLIMIT_CORE, 0);
-    if (const uint64_t bytes = std::strtoull(argv[2], nullptr, 10); bytes > 0 && !TYNDALL_SANITIZED) setLimit(RLIMIT_AS, bytes);
-    if (const uint64_t seconds = std::strtoull(argv[3], nullptr, 10); seconds > 0) setLimit(RLIMIT_CPU, seconds);
+    if (const uint64_t bytes = std::strtoull(argv[2], nullptr, 10); bytes > 0 && !TYNDALL_SANITIZED)
+        setLimit(RLIMIT_AS, bytes);
+    if (const uint64_t seconds = std::strtoull(argv[3], nullptr, 10); seconds > 0)
+        setLimit(RLIMIT_CPU, seconds);
 
     VoxelSink sink(kSocket);
     const auto fail = [&](std::string reason) {

@@ -22,8 +22,7 @@ float toFloat(double value) {
 }
 
 /// Calls a function of the library; what it throws becomes a reason for people. Lack of memory stays what it is.
-template <typename Function>
-auto explained(Function function) -> decltype(function()) {
+template <typename Function> auto explained(Function function) -> decltype(function()) {
     try {
         return function();
     } catch (const std::bad_alloc&) {
@@ -55,13 +54,15 @@ GridDescription describe(const openvdb::GridBase& grid, const std::string& name)
     const bool scalar = grid.isType<openvdb::FloatGrid>() || grid.isType<openvdb::DoubleGrid>();
     result.type = scalar && grid.saveFloatAsHalf() ? type + " (stored as half)" : type;
     result.gridClass = className(grid, type);
-    result.record.importable = scalar && (result.gridClass == "fog volume" || result.gridClass == "unknown");
+    result.record.importable =
+        scalar && (result.gridClass == "fog volume" || result.gridClass == "unknown");
 
     result.record.affine = grid.constTransform().isLinear();
     if (result.record.affine) {
         // OpenVDB multiplies row vectors; its rows are therefore the columns that are sent.
         const openvdb::Mat4d matrix = grid.constTransform().baseMap()->getAffineMap()->getMat4();
-        std::memcpy(result.record.worldFromIndex, matrix.asPointer(), sizeof result.record.worldFromIndex);
+        std::memcpy(result.record.worldFromIndex, matrix.asPointer(),
+                    sizeof result.record.worldFromIndex);
     }
     return result;
 }
@@ -75,8 +76,7 @@ void addExtent(GridDescription& grid, const openvdb::CoordBBox& box, uint64_t vo
     }
 }
 
-template <typename Grid>
-void readScalars(const Grid& grid, VoxelSink& sink) {
+template <typename Grid> void readScalars(const Grid& grid, VoxelSink& sink) {
     using Tree = typename Grid::TreeType;
     const Tree& tree = grid.tree();
     const auto background = tree.background();
@@ -104,7 +104,9 @@ class OpenVdbSource final : public GridSource {
 public:
     explicit OpenVdbSource(const std::string& path) : file_(path) {
         openvdb::initialize();
-        explained([&] { file_.open(/*delayLoad=*/false); }); // nothing is mapped or copied to a temporary file
+        explained([&] {
+            file_.open(/*delayLoad=*/false);
+        }); // nothing is mapped or copied to a temporary file
     }
 
     std::string format() const override { return "OpenVDB " + std::to_string(file_.fileVersion()); }
@@ -119,16 +121,20 @@ public:
     }
 
     GridDescription measure(uint32_t grid) override {
-        const openvdb::GridBase::Ptr whole = explained([&] { return file_.readGrid(names_.at(grid)); });
+        const openvdb::GridBase::Ptr whole =
+            explained([&] { return file_.readGrid(names_.at(grid)); });
         GridDescription result = describe(*whole, names_[grid]);
         addExtent(result, whole->evalActiveVoxelBoundingBox(), whole->activeVoxelCount());
         return result;
     }
 
     void read(uint32_t grid, VoxelSink& sink) override {
-        const openvdb::GridBase::Ptr whole = explained([&] { return file_.readGrid(names_.at(grid)); });
-        if (const auto floats = openvdb::gridConstPtrCast<openvdb::FloatGrid>(whole)) return readScalars(*floats, sink);
-        if (const auto doubles = openvdb::gridConstPtrCast<openvdb::DoubleGrid>(whole)) return readScalars(*doubles, sink);
+        const openvdb::GridBase::Ptr whole =
+            explained([&] { return file_.readGrid(names_.at(grid)); });
+        if (const auto floats = openvdb::gridConstPtrCast<openvdb::FloatGrid>(whole))
+            return readScalars(*floats, sink);
+        if (const auto doubles = openvdb::gridConstPtrCast<openvdb::DoubleGrid>(whole))
+            return readScalars(*doubles, sink);
         throw std::runtime_error("grid '" + names_[grid] + "' holds no scalars");
     }
 
@@ -137,13 +143,19 @@ private:
         try {
             const openvdb::GridBase::Ptr header = file_.readGridMetadata(name);
             GridDescription result = describe(*header, name);
-            const auto lowest = header->getMetadata<openvdb::Vec3IMetadata>(openvdb::GridBase::META_FILE_BBOX_MIN);
-            const auto highest = header->getMetadata<openvdb::Vec3IMetadata>(openvdb::GridBase::META_FILE_BBOX_MAX);
-            const auto count = header->getMetadata<openvdb::Int64Metadata>(openvdb::GridBase::META_FILE_VOXEL_COUNT);
+            const auto lowest =
+                header->getMetadata<openvdb::Vec3IMetadata>(openvdb::GridBase::META_FILE_BBOX_MIN);
+            const auto highest =
+                header->getMetadata<openvdb::Vec3IMetadata>(openvdb::GridBase::META_FILE_BBOX_MAX);
+            const auto count = header->getMetadata<openvdb::Int64Metadata>(
+                openvdb::GridBase::META_FILE_VOXEL_COUNT);
             if (lowest && highest && count && count->value() > 0)
-                addExtent(result, {openvdb::Coord(lowest->value()), openvdb::Coord(highest->value())}, uint64_t(count->value()));
+                addExtent(result,
+                          {openvdb::Coord(lowest->value()), openvdb::Coord(highest->value())},
+                          uint64_t(count->value()));
             return result;
-        } catch (const openvdb::Exception&) { // a type that this version of the library does not know
+        } catch (
+            const openvdb::Exception&) { // a type that this version of the library does not know
             GridDescription unknown;
             unknown.name = name;
             unknown.type = "unreadable";
@@ -152,13 +164,16 @@ private:
         }
     }
 
-    tbb::global_control oneThread_{tbb::global_control::max_allowed_parallelism, 1}; // memory limits count stacks
+    tbb::global_control oneThread_{tbb::global_control::max_allowed_parallelism,
+                                   1}; // memory limits count stacks
     openvdb::io::File file_;
     std::vector<std::string> names_;
 };
 
 } // namespace
 
-std::unique_ptr<GridSource> openOpenVdb(const std::string& path) { return std::make_unique<OpenVdbSource>(path); }
+std::unique_ptr<GridSource> openOpenVdb(const std::string& path) {
+    return std::make_unique<OpenVdbSource>(path);
+}
 
 } // namespace tyndall::reader

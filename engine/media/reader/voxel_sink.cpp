@@ -23,7 +23,8 @@ void sendAll(int socket, const void* data, size_t bytes) {
 
 } // namespace
 
-void VoxelSink::send(stream::MessageType type, const void* head, size_t headBytes, std::string_view text) {
+void VoxelSink::send(stream::MessageType type, const void* head, size_t headBytes,
+                     std::string_view text) {
     const stream::MessageHeader header{stream::kMagic, type, uint32_t(headBytes + text.size())};
     sendAll(socket_, &header, sizeof header);
     sendAll(socket_, head, headBytes);
@@ -31,12 +32,14 @@ void VoxelSink::send(stream::MessageType type, const void* head, size_t headByte
 }
 
 void VoxelSink::block(const std::array<int32_t, 3>& origin, const float* valuesZFastest) {
-    if (std::all_of(valuesZFastest, valuesZFastest + 512, [](float value) { return value == 0; })) return;
+    if (std::all_of(valuesZFastest, valuesZFastest + 512, [](float value) { return value == 0; }))
+        return;
     stream::BlockRecord& record = blocks_.emplace_back();
     std::copy(origin.begin(), origin.end(), record.origin);
     for (int z = 0; z < 8; ++z)
         for (int y = 0; y < 8; ++y)
-            for (int x = 0; x < 8; ++x) record.values[z * 64 + y * 8 + x] = valuesZFastest[x * 64 + y * 8 + z];
+            for (int x = 0; x < 8; ++x)
+                record.values[z * 64 + y * 8 + x] = valuesZFastest[x * 64 + y * 8 + z];
     if (blocks_.size() == stream::kBlocksPerMessage) flushBlocks();
 }
 
@@ -46,12 +49,15 @@ void VoxelSink::tile(const std::array<int32_t, 3>& origin, int32_t size, float v
 }
 
 void VoxelSink::flushBlocks() {
-    if (!blocks_.empty()) send(stream::MessageType::Blocks, blocks_.data(), blocks_.size() * sizeof(stream::BlockRecord));
+    if (!blocks_.empty())
+        send(stream::MessageType::Blocks, blocks_.data(),
+             blocks_.size() * sizeof(stream::BlockRecord));
     blocks_.clear();
 }
 
 void VoxelSink::flushTiles() {
-    if (!tiles_.empty()) send(stream::MessageType::Tiles, tiles_.data(), tiles_.size() * sizeof(stream::TileRecord));
+    if (!tiles_.empty())
+        send(stream::MessageType::Tiles, tiles_.data(), tiles_.size() * sizeof(stream::TileRecord));
     tiles_.clear();
 }
 

@@ -16,7 +16,8 @@ namespace tyndall::reader {
 class VoxelSink {
 public:
     explicit VoxelSink(int socket) : socket_(socket) {}
-    void send(stream::MessageType type, const void* head, size_t headBytes, std::string_view text = {});
+    void send(stream::MessageType type, const void* head, size_t headBytes,
+              std::string_view text = {});
     /// 8³ values at `origin`, the value of (x, y, z) at index x·64 + y·8 + z (the order of both libraries).
     /// Blocks of nothing but zeros are not sent.
     void block(const std::array<int32_t, 3>& origin, const float* valuesZFastest);

@@ -6,13 +6,17 @@ namespace tyndall::volumetric_gi {
 namespace {
 
 const SettingDesc kOctavesSettings[] = {
-    TYNDALL_INT(OctavesSettings, count, "octaves.count", "Octaves", "", 0, 16, 7, "Octaves beyond single scattering; 0 turns the technique off."),
-    TYNDALL_FLOAT(OctavesSettings, scatteringFactor, "octaves.scatteringFactor", "Scattering factor", "", 0, 1, 0.5,
-                  "Each octave scatters so much of the one before; energy stays bounded while it is no larger than the extinction factor."),
-    TYNDALL_FLOAT(OctavesSettings, extinctionFactor, "octaves.extinctionFactor", "Extinction factor", "", 0, 1, 0.5,
+    TYNDALL_INT(OctavesSettings, count, "octaves.count", "Octaves", "", 0, 16, 7,
+                "Octaves beyond single scattering; 0 turns the technique off."),
+    TYNDALL_FLOAT(
+        OctavesSettings, scatteringFactor, "octaves.scatteringFactor", "Scattering factor", "", 0,
+        1, 0.5,
+        "Each octave scatters so much of the one before; energy stays bounded while it is no larger than the extinction factor."),
+    TYNDALL_FLOAT(OctavesSettings, extinctionFactor, "octaves.extinctionFactor",
+                  "Extinction factor", "", 0, 1, 0.5,
                   "Each octave's light meets so much of the optical depth of the one before."),
-    TYNDALL_FLOAT(OctavesSettings, phaseFactor, "octaves.phaseFactor", "Phase factor", "", 0, 1, 0.5,
-                  "Each octave scatters with so much of the anisotropy of the one before."),
+    TYNDALL_FLOAT(OctavesSettings, phaseFactor, "octaves.phaseFactor", "Phase factor", "", 0, 1,
+                  0.5, "Each octave scatters with so much of the anisotropy of the one before."),
 };
 
 constexpr PresetEntry kOctavesPresets[] = {
@@ -27,7 +31,8 @@ constexpr PresetEntry kOctavesPresets[] = {
 std::span<const SettingDesc> octavesSettings() { return kOctavesSettings; }
 std::span<const PresetEntry> octavesPresets() { return kOctavesPresets; }
 
-fg::TextureHandle addOctavesPass(fg::FrameGraph& graph, const plugin::FrameInputs& inputs, const OctavesSettings& settings) {
+fg::TextureHandle addOctavesPass(fg::FrameGraph& graph, const plugin::FrameInputs& inputs,
+                                 const OctavesSettings& settings) {
     struct Data {
         ViewResources view;
         LightResources lights;
@@ -35,25 +40,43 @@ fg::TextureHandle addOctavesPass(fg::FrameGraph& graph, const plugin::FrameInput
         fg::TextureHandle depth, inScatter;
         gpu::OctavesParams params;
     };
-    return graph.addPass<Data>("gi.octaves.march",
-        [&](fg::Builder& builder, Data& data) {
-            if (inputs.media.count == 0) return builder.skip("no medium in the scene");
-            if (settings.count == 0) return builder.skip("setting octaves.count is 0");
-            if (inputs.lights.lightCount == 0) return builder.skip("no light in the scene");
-            data.view = inputs.view;
-            data.lights = readLights(builder, inputs.lights);
-            data.media = readMedia(builder, inputs.media);
-            data.depth = builder.read(inputs.gbuffer.depth);
-            data.inScatter = builder.create("gi.octaves.inScatter", fg::texture2D(fg::Format::RGBA32F, inputs.view.width, inputs.view.height));
-            data.params = {inputs.lights.lightCount, uint32_t(settings.count), settings.scatteringFactor, settings.extinctionFactor, settings.phaseFactor, 0, 0, 0};
-        },
-        [](const Data& data, fg::PassContext& context) {
-            auto command = context.compute("gi/octaves/march.comp", {{"PHASE_GROUPS", int32_t(data.media.phaseGroups)}, {"MEDIA_KINDS", int32_t(data.media.kinds)}});
-            bindView(command, data.view);
-            bindLights(command, data.lights);
-            bindMedia(command, data.media);
-            command.bind("depth", data.depth).bind("inScatter", data.inScatter).params(data.params).dispatchOver(data.inScatter);
-        }).inScatter;
+    return graph
+        .addPass<Data>(
+            "gi.octaves.march",
+            [&](fg::Builder& builder, Data& data) {
+                if (inputs.media.count == 0) return builder.skip("no medium in the scene");
+                if (settings.count == 0) return builder.skip("setting octaves.count is 0");
+                if (inputs.lights.lightCount == 0) return builder.skip("no light in the scene");
+                data.view = inputs.view;
+                data.lights = readLights(builder, inputs.lights);
+                data.media = readMedia(builder, inputs.media);
+                data.depth = builder.read(inputs.gbuffer.depth);
+                data.inScatter = builder.create(
+                    "gi.octaves.inScatter",
+                    fg::texture2D(fg::Format::RGBA32F, inputs.view.width, inputs.view.height));
+                data.params = {inputs.lights.lightCount,
+                               uint32_t(settings.count),
+                               settings.scatteringFactor,
+                               settings.extinctionFactor,
+                               settings.phaseFactor,
+                               0,
+                               0,
+                               0};
+            },
+            [](const Data& data, fg::PassContext& context) {
+                auto command = context.compute("gi/octaves/march.comp",
+                                               {{"PHASE_GROUPS", int32_t(data.media.phaseGroups)},
+                                                {"MEDIA_KINDS", mediaKinds(data.media, true)},
+                                                {"SOFT_SHADOWS", data.lights.softShadows}});
+                bindView(command, data.view);
+                bindLights(command, data.lights);
+                bindMedia(command, data.media);
+                command.bind("depth", data.depth)
+                    .bind("inScatter", data.inScatter)
+                    .params(data.params)
+                    .dispatchOver(data.inScatter);
+            })
+        .inScatter;
 }
 
 } // namespace tyndall::volumetric_gi

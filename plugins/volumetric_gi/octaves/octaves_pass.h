@@ -18,6 +18,7 @@ std::span<const SettingDesc> octavesSettings();
 std::span<const PresetEntry> octavesPresets();
 
 /// View-sized RGBA32F nits that reach the eye: the octaves 1 … count. Skipped where no medium scatters or no octave is asked for.
-fg::TextureHandle addOctavesPass(fg::FrameGraph& graph, const plugin::FrameInputs& inputs, const OctavesSettings& settings);
+fg::TextureHandle addOctavesPass(fg::FrameGraph& graph, const plugin::FrameInputs& inputs,
+                                 const OctavesSettings& settings);
 
 } // namespace tyndall::volumetric_gi
