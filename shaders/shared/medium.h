@@ -43,7 +43,11 @@ struct MediaHeader {
     uint environmentLights;  // how many they are
     uint environmentStride;  // a segment of a march gathers from every so many-th of them; 0 as 1
     uint padding0;
+    uint padding1;
 };
+#ifdef __cplusplus
+static_assert(sizeof(MediaHeader) % 16 == 0, "the media follow it in one buffer");
+#endif
 
 struct MediumData {
     mat4 localFromRender;       // box: the unit cube [-½,½]³; sphere: the unit ball; height: y in world metres above the origin;
