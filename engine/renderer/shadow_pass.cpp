@@ -22,26 +22,26 @@ struct ShadowPass::Data {
 
 namespace {
 
-/// Left, right, bottom, top, and for perspective maps what is before the light. Nothing is cut off towards the light or
-/// away from it: whatever stands in the way casts a shadow.
+/// Left, right, bottom, top, and for perspective maps what is before the light. Nothing is cut off away from the light, and
+/// towards it only what lies within a lamp's ball: whatever stands in the way casts a shadow.
 std::array<vec4, 5> mapPlanes(const mat4& clipFromRender) {
     const mat4 rows = glm::transpose(clipFromRender);
     return {rows[3] + rows[0], rows[3] - rows[0], rows[3] + rows[1], rows[3] - rows[1], rows[3]};
 }
 
-fg::RasterState casterState() {
+fg::RasterState casterState(bool perspective) {
     fg::RasterState state;
-    state.cull = fg::CullMode::
-        None; // a surface that the camera sees from one side only blocks light from both
+    // A surface that the camera sees from one side only blocks light from both.
+    state.cull = fg::CullMode::None;
     state.depth = fg::DepthMode::TestAndWrite;
     state.compare = fg::CompareMode::Greater; // reversed depth: the nearest to the light stays
-    state.depthClamp = true;
+    state.depthClamp = !perspective;
     return state;
 }
 
 /// Nothing there: depth 0, written where anything lies nearer.
 fg::RasterState emptyState() {
-    fg::RasterState state = casterState();
+    fg::RasterState state = casterState(false);
     state.compare = fg::CompareMode::Less;
     return state;
 }
@@ -91,7 +91,7 @@ void ShadowPass::drawMap(const Data& data, size_t index, fg::PassContext& contex
                                           {{"MASK", mask ? 1 : 0}});
             command.depthOnly(depth)
                 .viewport(x, y, side, side)
-                .state(casterState())
+                .state(casterState(view.bias.y > 0.0f))
                 .params(params)
                 .bind("Objects", data.scene->objects());
             command.set("firstObject", int(run.first->object));

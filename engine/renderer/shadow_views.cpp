@@ -189,7 +189,11 @@ std::vector<Frustum> directionalViews(const gpu::LightData& light, const ShadowR
 
 std::vector<Frustum> localViews(const gpu::LightData& light, double nearDistance, int side,
                                 const dvec2& jitter) {
-    const dvec3 from(light.samplePoint.w > 0 ? light.samplePoint : light.position);
+    const bool onBall = light.samplePoint.w > 0;
+    const dvec3 from(onBall ? light.samplePoint : light.position);
+    // Light leaves a ball at its surface: what is inside, or the lamp's own glass, casts no shadow.
+    if (!onBall && light.type != gpu::kLightRect)
+        nearDistance = std::max(nearDistance, 1.001 * double(light.direction.w));
     std::vector<Frustum> views;
     if (light.type == gpu::kLightSpot && double(light.axisY.w) >= std::cos(kWidestSpot)) {
         const dvec3 forward = glm::normalize(dvec3(light.direction));

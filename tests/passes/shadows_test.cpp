@@ -336,6 +336,19 @@ TEST_P(ShadowsOnPoints, PointLightShadowsInAllSixDirections) {
     }
 }
 
+TEST_P(ShadowsOnPoints, ALampShinesThroughItsOwnGlass) {
+    SceneMaker maker;
+    maker.primitive(PrimitiveShape::Plane, {20, 1, 20}, {0, 0, 0});
+    maker.primitive(PrimitiveShape::Sphere, dvec3(0.2), {0, 2, 0});
+    maker.primitive(PrimitiveShape::Box, {0.5, 0.1, 0.5}, {0, 1, 0}); // and still has shadows
+    maker.pointLight(100, {0, 2, 0}, 0.1f);
+    const std::vector<Seen> seen =
+        look(maker, {{{3, 0, 0}, kUp}, {{0, 0, -4}, kUp}, {{0, 0, 0}, kUp}}, {});
+    EXPECT_EQ(seen[0].visibility, 1);
+    EXPECT_EQ(seen[1].visibility, 1);
+    EXPECT_EQ(seen[2].visibility, 0);
+}
+
 TEST_P(ShadowsOnPoints, RectLightShadowsOnItsSide) {
     SceneMaker maker;
     Light panel;
