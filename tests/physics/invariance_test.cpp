@@ -129,7 +129,7 @@ TEST(Invariance, ABoxAndAConstantGridAreTheSameMedium) {
 }
 
 TEST(Invariance, ABoxAndAConstantGridAreTheSameMediumAroundALamp) {
-    // Radiance has a pole where a ray meets the lamp, one over the distance. Its few pixels hold a tenth of the light and
+    // Radiance has a pole where a ray meets the lamp, one over the distance. Its four pixels hold a fifth of the light and
     // differ by the noise of 16 frames, some 10 %.
     const Comparison c = gridAgainstBox(dvec3(0.5, 1.6, 0.5));
     EXPECT_LE(c.relmse, 1e-3);
