@@ -121,7 +121,8 @@ Comparison gridAgainstBox(dvec3 lamp) {
 }
 
 TEST(Invariance, ABoxAndAConstantGridAreTheSameMedium) {
-    // A trilinear field fades over a voxel at its border, half of it outside the box: as much matter, a little more spread out.
+    // A trilinear field fades over a voxel at its border, half of it outside the box: as much matter, a little more spread
+    // out. What that changes is of second order in the voxel's optical depth of 0.03: some 5e-4.
     const Comparison c = gridAgainstBox(dvec3(0.5, 3, 0.5));
     EXPECT_LE(c.relmse, 1e-3);
     EXPECT_NEAR(c.energy, 1, 1e-3);
@@ -130,7 +131,7 @@ TEST(Invariance, ABoxAndAConstantGridAreTheSameMedium) {
 
 TEST(Invariance, ABoxAndAConstantGridAreTheSameMediumAroundALamp) {
     // Radiance has a pole where a ray meets the lamp, one over the distance. Its four pixels hold a fifth of the light and
-    // differ by the noise of 16 frames, some 10 %.
+    // differ by the noise of 16 frames, some 10 %: 2 % of the light that is scattered, half of that of the picture.
     const Comparison c = gridAgainstBox(dvec3(0.5, 1.6, 0.5));
     EXPECT_LE(c.relmse, 1e-3);
     EXPECT_NEAR(c.energy, 1, 1e-2);
