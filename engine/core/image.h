@@ -56,6 +56,9 @@ Result<ExrFile> readExr(const std::filesystem::path& path);
 /// 8-bit PNG from display-referred RGB or RGBA bytes, top row first. Atomic as writeExr.
 Result<void> writePng(const std::filesystem::path& path, int width, int height, int channels,
                       std::span<const uint8_t> bytes);
+/// The colours of a PNG as its values over the largest (8 or 16 bits): RGB in [0,1], encoded as they are in the file.
+/// Grey becomes RGB, transparency is left out. Errors: missing or damaged file, absurd size (over 2^28 pixels).
+Result<Image> readPng(const std::filesystem::path& path);
 /// An HDR latitude-longitude image (.hdr or .exr) as linear RGB.
 Result<Image> readHdr(const std::filesystem::path& path);
 

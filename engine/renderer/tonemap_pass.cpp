@@ -7,10 +7,9 @@
 namespace tyndall {
 namespace {
 
-constexpr const char* kCurveNames[] = {"linear", "aces", "agx", "neutral"};
-
 const SettingDesc kPostSettings[] = {
-    TYNDALL_ENUM(PostSettings, curve, "post.toneCurve", "Tone curve", kCurveNames, ToneCurve::Agx,
+    TYNDALL_ENUM(PostSettings, curve, "post.toneCurve", "Tone curve", kToneCurveNames,
+                 kDefaultToneCurve,
                  "From light to display: linear (clipped), ACES, AgX or Khronos PBR Neutral."),
     TYNDALL_BOOL(PostSettings, dither, "post.dither", "Dither", true,
                  "Noise of one 8-bit step hides banding."),

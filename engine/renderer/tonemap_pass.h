@@ -2,11 +2,10 @@
 // Exposure and tone curve: the only place where a picture leaves linear nits.
 
 #include "core/settings.h"
+#include "core/tone_curve.h"
 #include "framegraph/frame_graph.h"
 
 namespace tyndall {
-
-enum class ToneCurve : int32_t { Linear = 0, Aces = 1, Agx = 2, Neutral = 3 };
 
 struct PostSettings {
     ToneCurve curve;

@@ -83,5 +83,29 @@ TEST_F(FileTest, PngHoldsTheBytesTopRowFirst) {
     EXPECT_FALSE(writePng(folder / "no" / "b.png", 2, 3, 3, rgb).ok());
 }
 
+TEST_F(FileTest, PngReadsBackAsItsValuesOverTheLargest) {
+    const std::vector<uint8_t> rgba = {255, 0, 51, 255, 1, 2, 3, 0};
+    ASSERT_TRUE(writePng(folder / "a.png", 2, 1, 4, rgba).ok());
+    const Image image = readPng(folder / "a.png").value();
+    ASSERT_EQ(image.channels, 3) << "transparency is left out";
+    const std::vector<int> expected = {255, 0, 51, 1, 2, 3};
+    for (size_t i = 0; i < 6; ++i) EXPECT_FLOAT_EQ(image.pixels[i], float(expected[i]) / 255.0f);
+}
+
+TEST_F(FileTest, DamagedPngsAreRefusedByName) {
+    const std::vector<uint8_t> rgb(64 * 64 * 3, 77);
+    ASSERT_TRUE(writePng(folder / "a.png", 64, 64, 3, rgb).ok());
+    const std::string whole = readFile(folder / "a.png").value();
+    for (size_t length : {size_t(0), size_t(7), size_t(20), whole.size() / 2}) {
+        ASSERT_TRUE(writeFileAtomically(folder / "b.png", whole.substr(0, length)).ok());
+        EXPECT_THAT(readPng(folder / "b.png").message(), HasSubstr("b.png")) << length;
+    }
+    std::string vast = whole; // the header's width: bytes 16 to 19
+    vast.replace(16, 4, std::string("\x00\xff\xff\xff", 4));
+    ASSERT_TRUE(writeFileAtomically(folder / "c.png", vast).ok());
+    EXPECT_FALSE(readPng(folder / "c.png").ok());
+    EXPECT_THAT(readPng(folder / "none.png").message(), HasSubstr("none.png"));
+}
+
 } // namespace
 } // namespace tyndall
