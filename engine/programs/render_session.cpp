@@ -5,29 +5,13 @@
 #include "core/log.h"
 #include "plugin/builtin_plugins.h"
 #include "programs/interrupt.h"
+#include "programs/load_scene.h"
 
 namespace tyndall {
 namespace {
 
 constexpr std::string_view kTechniqueKey =
     "gi.technique="; // a name, not a number: it goes into the request
-
-Result<int> findCamera(const Scene& scene, const std::string& name) {
-    std::string known;
-    std::vector<std::string_view> names;
-    for (size_t i = 0; i < scene.nodes.size(); ++i) {
-        const Node& node = scene.nodes[i];
-        if (node.camera == kNone) continue;
-        if (node.name == name) return int(i);
-        names.emplace_back(node.name);
-        known += (known.empty() ? "'" : ", '") + node.name + "'";
-    }
-    const std::string nearest = nearestName(name, names);
-    return Error{fmt::format("--camera {}: the scene has no camera of this name; {}", name,
-                             !nearest.empty() ? "did you mean '" + nearest + "'?"
-                             : known.empty()  ? "it has none at all"
-                                              : "it has " + known)};
-}
 
 /// The lens of that node's camera at another place.
 CameraPose posedCamera(const Scene& scene, int node, const PoseOption& pose) {
@@ -44,18 +28,7 @@ CameraPose posedCamera(const Scene& scene, int node, const PoseOption& pose) {
 Outcome RenderSession::loadSceneFile(const RenderOptions& options, ProgressStyle style,
                                      CpuProfiler* profiler) {
     const CpuZone zone(profiler, "scene.load");
-    Progress progress("loading " + options.scene, style);
-    const LoadOptions load{[&progress](float fraction, const std::string& what) {
-        progress.update(double(fraction), what);
-        return !interrupted();
-    }};
-    Result<LoadedScene> loaded = loadScene(options.scene, load);
-    if (interrupted()) return failed("interrupted while the scene was loaded; nothing was written");
-    if (!loaded.ok()) return wrongInput(loaded.message());
-    for (const std::string& what : loaded->supplied) log::info("supplied: " + what);
-    for (const std::string& note : loaded->notes) log::info("note: " + note);
-    scene_ = std::move(loaded->scene);
-    return {};
+    return loadSceneForCommand(options.scene, style, scene_);
 }
 
 Outcome RenderSession::startRenderer(const RenderOptions& options, const RenderPlan& plan,

@@ -1,0 +1,47 @@
+#include "programs/load_scene.h"
+
+#include <fmt/format.h>
+
+#include "core/log.h"
+#include "core/settings.h"
+#include "programs/interrupt.h"
+
+namespace tyndall {
+
+Outcome loadSceneForCommand(const std::string& path, ProgressStyle style, Scene& scene) {
+    Progress progress("loading " + path, style);
+    const LoadOptions load{[&progress](float fraction, const std::string& what) {
+        progress.update(double(fraction), what);
+        return !interrupted();
+    }};
+    Result<LoadedScene> loaded = loadScene(path, load);
+    if (interrupted()) return failed("interrupted while the scene was loaded; nothing was written");
+    if (!loaded.ok()) return wrongInput(loaded.message());
+    for (const std::string& what : loaded->supplied) log::info("supplied: " + what);
+    for (const std::string& note : loaded->notes) log::info("note: " + note);
+    scene = std::move(loaded->scene);
+    return {};
+}
+
+Result<int> findCamera(const Scene& scene, const std::string& name) {
+    if (name.empty()) {
+        if (scene.activeCamera != kNone) return scene.activeCamera;
+        return Error{fmt::format("the scene '{}' has no camera to look through", scene.name)};
+    }
+    std::string known;
+    std::vector<std::string_view> names;
+    for (size_t i = 0; i < scene.nodes.size(); ++i) {
+        const Node& node = scene.nodes[i];
+        if (node.camera == kNone) continue;
+        if (node.name == name) return int(i);
+        names.emplace_back(node.name);
+        known += (known.empty() ? "'" : ", '") + node.name + "'";
+    }
+    const std::string nearest = nearestName(name, names);
+    return Error{fmt::format("--camera {}: the scene has no camera of this name; {}", name,
+                             !nearest.empty() ? "did you mean '" + nearest + "'?"
+                             : known.empty()  ? "it has none at all"
+                                              : "it has " + known)};
+}
+
+} // namespace tyndall

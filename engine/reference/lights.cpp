@@ -1,0 +1,196 @@
+#include "reference/lights.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tyndall::reference {
+namespace {
+
+/// Light that shadows and media make weaker than thought must still be found: each light gets this part of the chances.
+constexpr double kEvenPart = 0.1;
+
+dvec3 corner(const MeshInstance& instance, uint32_t triangle, size_t i) {
+    return dvec3(instance.positions[instance.mesh->indices[3 * size_t(triangle) + i]]);
+}
+
+dvec3 doubledArea(const MeshInstance& instance, uint32_t triangle) {
+    const dvec3 a = corner(instance, triangle, 0);
+    return glm::cross(corner(instance, triangle, 1) - a, corner(instance, triangle, 2) - a);
+}
+
+} // namespace
+
+Lights::Lights(const Scene& scene, const dvec3& origin, SurfaceScene& surfaces)
+    : environment_(scene.environment), surfaces_(surfaces) {
+    const std::vector<dmat4> world = scene.worldTransforms();
+    const std::vector<bool> visible = scene.worldVisibility();
+    for (size_t i = 0; i < scene.nodes.size(); ++i) {
+        if (!visible[i] || scene.nodes[i].light == kNone) continue;
+        dmat4 rayFromNode = world[i];
+        rayFromNode[3] -= dvec4(origin, 0);
+        const LightSource lamp(scene.lights[size_t(scene.nodes[i].light)], rayFromNode);
+        if (!lamp.black()) lamps_.push_back(lamp);
+    }
+    collectEmitters(surfaces);
+}
+
+void Lights::collectEmitters(SurfaceScene& surfaces) {
+    auto& instances = surfaces.mutableInstances();
+    for (uint32_t i = 0; i < instances.size(); ++i) {
+        MeshInstance& instance = instances[i];
+        if (instance.material->unlit) continue; // shows a colour, lights nothing
+        const double brightest = surfaces.materials().brightestEmission(*instance.material);
+        if (!(brightest > 0) || !std::isfinite(brightest)) continue;
+        instance.firstEmitter = uint32_t(emitters_.size());
+        const uint32_t triangles = uint32_t(instance.mesh->indices.size() / 3);
+        for (uint32_t triangle = 0; triangle < triangles; ++triangle) {
+            const double area = 0.5 * glm::length(doubledArea(instance, triangle));
+            const double sides = instance.material->doubleSided ? 2 : 1;
+            emitters_.push_back({i, triangle});
+            emitterSums_.push_back(emitterSums_.back() + area * brightest * sides);
+            for (size_t c = 0; c < 3; ++c) emitterBounds_.include(corner(instance, triangle, c));
+        }
+    }
+}
+
+bool Lights::black() const {
+    return lamps_.empty() && !(emitterSums_.back() > 0) && environment_.black();
+}
+
+void Lights::choose(const dvec3& from, bool constantEnvironment, LightChoice& choice) const {
+    choice.weights_.assign(count(), 0);
+    for (size_t i = 0; i < lamps_.size(); ++i) choice.weights_[i] = lamps_[i].importance(from);
+    if (emitterSums_.back() > 0) {
+        const dvec3 nearest = glm::clamp(from, emitterBounds_.minimum, emitterBounds_.maximum);
+        const dvec3 half = 0.5 * emitterBounds_.extent();
+        const double near2 = glm::dot(nearest - from, nearest - from);
+        choice.weights_[trianglesIndex()] =
+            emitterSums_.back() / std::max(near2 + 0.25 * glm::dot(half, half), 1e-30);
+    }
+    if (!environment_.black() && (constantEnvironment || !environment_.constant()))
+        choice.weights_[environmentIndex()] = kPi * environment_.meanLuminance();
+    double sum = 0;
+    size_t lit = 0;
+    for (const double weight : choice.weights_) {
+        sum += weight;
+        lit += weight > 0;
+    }
+    // A lamp may light this point although its estimate is 0 (a spot's ball): all lamps keep a chance.
+    const size_t kept = std::max<size_t>(lit, lamps_.size());
+    if (kept == 0) {
+        choice.total_ = 0;
+        return;
+    }
+    const double even = sum > 0 ? kEvenPart * sum / double(kept) : 1;
+    choice.total_ = 0;
+    for (size_t i = 0; i < choice.weights_.size(); ++i) {
+        if (i < lamps_.size() || choice.weights_[i] > 0) choice.weights_[i] += even;
+        choice.total_ += choice.weights_[i];
+    }
+}
+
+void Lights::chooseAlong(const Ray& ray, double length, LightChoice& choice) const {
+    choice.weights_.assign(count(), 0);
+    for (size_t i = 0; i < lamps_.size(); ++i)
+        choice.weights_[i] = lamps_[i].importanceAlong(ray, length);
+    if (emitterSums_.back() > 0) {
+        const dvec3 middle = ray.at(0.5 * length),
+                    nearest = glm::clamp(middle, emitterBounds_.minimum, emitterBounds_.maximum);
+        const dvec3 half = 0.5 * emitterBounds_.extent();
+        choice.weights_[trianglesIndex()] =
+            emitterSums_.back() * length /
+            std::max(glm::dot(nearest - middle, nearest - middle) + 0.25 * glm::dot(half, half) +
+                         0.25 * length * length,
+                     1e-30);
+    }
+    if (!environment_.black())
+        choice.weights_[environmentIndex()] = kPi * environment_.meanLuminance() * length;
+    double sum = 0;
+    size_t lit = 0;
+    for (const double weight : choice.weights_) {
+        sum += weight;
+        lit += weight > 0;
+    }
+    choice.total_ = 0;
+    for (double& weight : choice.weights_) {
+        if (weight > 0) weight += kEvenPart * sum / double(lit);
+        choice.total_ += weight;
+    }
+}
+
+size_t Lights::pick(const LightChoice& choice, double& u) {
+    double target = u * choice.total_;
+    size_t last = 0;
+    for (size_t i = 0; i < choice.weights_.size(); ++i) {
+        if (!(choice.weights_[i] > 0)) continue;
+        last = i;
+        if (target < choice.weights_[i]) break;
+        target -= choice.weights_[i];
+    }
+    u = std::clamp(target / choice.weights_[last], 0.0, 0x1.fffffffffffffp-1);
+    return last;
+}
+
+AimedSample Lights::aim(size_t light, const dvec3& from, double u0, const dvec2& u) const {
+    AimedSample result;
+    if (light < lamps_.size()) {
+        static_cast<LightSample&>(result) = lamps_[light].sample(from, u);
+        result.delta = lamps_[light].delta() || !lamps_[light].castsShadows();
+        result.shadowed = lamps_[light].castsShadows();
+    } else if (light == trianglesIndex()) {
+        result = aimAtTriangle(from, u0, u);
+    } else {
+        const DirectionSample sample = environment_.sample(u);
+        result.direction = sample.direction;
+        result.distance = kInfinity;
+        result.radiance = sample.radiance;
+        result.density = sample.density;
+    }
+    return result;
+}
+
+AimedSample Lights::aimAtTriangle(const dvec3& from, double u0, const dvec2& u) const {
+    AimedSample result;
+    if (emitters_.empty()) return result;
+    const double target = u0 * emitterSums_.back();
+    size_t i = size_t(std::upper_bound(emitterSums_.begin(), emitterSums_.end(), target) -
+                      emitterSums_.begin());
+    i = std::clamp<size_t>(i, 1, emitters_.size()) - 1;
+    const Emitter& emitter = emitters_[i];
+    const MeshInstance& instance = surfaces_.instances()[emitter.instance];
+    RayHit hit;
+    hit.instance = emitter.instance;
+    hit.triangle = emitter.triangle;
+    const double root = std::sqrt(u.x);
+    hit.u = root * (1 - u.y);
+    hit.v = root * u.y;
+    const dvec3 at = (1 - root) * corner(instance, emitter.triangle, 0) +
+                     hit.u * corner(instance, emitter.triangle, 1) +
+                     hit.v * corner(instance, emitter.triangle, 2);
+    const dvec3 way = at - from;
+    const double distance = glm::length(way);
+    if (!(distance > 0)) return result;
+    const Ray ray{from, way / distance};
+    const SurfacePoint point = surfaces_.pointAt(ray, hit);
+    const double coverage = surfaces_.coverageAt(hit.instance, hit.triangle, hit.u, hit.v);
+    result.direction = ray.direction;
+    // Just before the triangle, which must not shadow itself.
+    const double cosine = std::abs(glm::dot(point.surface.geometricNormal, ray.direction));
+    result.distance =
+        distance - std::min(2 * point.margin / std::max(cosine, 0.01), 0.5 * distance);
+    result.radiance = point.emission * coverage;
+    result.density = emitterDensity(uint32_t(i), from, at);
+    return result;
+}
+
+double Lights::emitterDensity(uint32_t emitter, const dvec3& from, const dvec3& at) const {
+    const MeshInstance& instance = surfaces_.instances()[emitters_[emitter].instance];
+    const dvec3 doubled = doubledArea(instance, emitters_[emitter].triangle), way = at - from;
+    const double squared = glm::dot(way, way);
+    // chance / area · distance² / cosine, the area as it is seen: |doubled · way| / 2 / distance
+    const double seen = 0.5 * std::abs(glm::dot(doubled, way)) / std::sqrt(squared);
+    const double chance = (emitterSums_[emitter + 1] - emitterSums_[emitter]) / emitterSums_.back();
+    return seen > 0 ? chance * squared / seen : 0;
+}
+
+} // namespace tyndall::reference

@@ -1,0 +1,76 @@
+#pragma once
+// All light of a scene but its media's: lamps, glowing triangles, the environment; and which of them to aim at.
+
+#include <vector>
+
+#include "reference/environment_source.h"
+#include "reference/light_source.h"
+#include "reference/surface_scene.h"
+
+namespace tyndall::reference {
+
+/// A way to some light, chosen among all of them. `density` includes the chance of choosing that light.
+struct AimedSample : LightSample {
+    bool delta = false;   // no ray meets it by chance
+    bool shadowed = true; // surfaces block it
+    bool valid() const { return density > 0 && maximumOf(radiance) > 0; }
+};
+
+/// How likely each light is to be aimed at, from a point or from along a piece of a ray.
+class LightChoice {
+public:
+    /// Of light number `light`; 0 where there is no light at all.
+    [[nodiscard]] double chance(size_t light) const {
+        return total_ > 0 ? weights_[light] / total_ : 0;
+    }
+    [[nodiscard]] bool empty() const { return !(total_ > 0); }
+    void clear() { total_ = 0; }
+
+private:
+    friend class Lights;
+    std::vector<double> weights_;
+    double total_ = 0;
+};
+
+class Lights {
+public:
+    /// Marks the instances' emitting triangles in `surfaces`. `origin` as in SurfaceScene::build.
+    Lights(const Scene& scene, const dvec3& origin, SurfaceScene& surfaces);
+
+    /// Lamps first, then the glowing triangles as one, then the environment.
+    [[nodiscard]] size_t count() const { return lamps_.size() + 2; }
+    [[nodiscard]] const std::vector<LightSource>& lamps() const { return lamps_; }
+    [[nodiscard]] size_t trianglesIndex() const { return lamps_.size(); }
+    [[nodiscard]] size_t environmentIndex() const { return lamps_.size() + 1; }
+    [[nodiscard]] const EnvironmentSource& environment() const { return environment_; }
+    [[nodiscard]] bool black() const;
+    [[nodiscard]] size_t emittingTriangles() const { return emitters_.size(); }
+
+    /// From a point. `constantEnvironment`: whether to aim at an environment that is the same all round.
+    void choose(const dvec3& from, bool constantEnvironment, LightChoice& choice) const;
+    /// From along [0,length] of the ray, a finite one.
+    void chooseAlong(const Ray& ray, double length, LightChoice& choice) const;
+    /// Which light `u` picks, and u made fresh for other use.
+    [[nodiscard]] static size_t pick(const LightChoice& choice, double& u);
+    /// A way to light number `light` from a point; density without the chance of that light.
+    [[nodiscard]] AimedSample aim(size_t light, const dvec3& from, double u0, const dvec2& u) const;
+
+    /// Density per steradian with which aim() finds this point of a glowing triangle from `from`.
+    [[nodiscard]] double emitterDensity(uint32_t emitter, const dvec3& from, const dvec3& at) const;
+
+private:
+    struct Emitter {
+        uint32_t instance, triangle;
+    };
+    void collectEmitters(SurfaceScene& surfaces);
+    [[nodiscard]] AimedSample aimAtTriangle(const dvec3& from, double u0, const dvec2& u) const;
+
+    std::vector<LightSource> lamps_;
+    EnvironmentSource environment_;
+    const SurfaceScene& surfaces_;
+    std::vector<Emitter> emitters_;
+    std::vector<double> emitterSums_{0}; // cumulative power, emitters + 1
+    Bounds emitterBounds_;
+};
+
+} // namespace tyndall::reference

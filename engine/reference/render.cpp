@@ -1,0 +1,79 @@
+#include "reference/render.h"
+
+#include <atomic>
+
+#include <tbb/enumerable_thread_specific.h>
+#include <tbb/global_control.h>
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+
+#include "reference/simple_path_tracer.h"
+
+namespace tyndall::reference {
+namespace {
+
+constexpr int kTile = 16; // pixels
+
+int tilesAcross(int pixels) { return (pixels + kTile - 1) / kTile; }
+
+} // namespace
+
+Result<ReferenceRender> ReferenceRender::start(const Scene& scene, int cameraNode,
+                                               const RenderSettings& settings) {
+    const CameraRays camera(scene, cameraNode, settings.width, settings.height);
+    auto traced = TracerScene::build(scene, camera.origin(), settings.threads);
+    if (!traced.ok()) return traced.error();
+    return ReferenceRender(std::move(*traced), camera, settings);
+}
+
+void ReferenceRender::renderTile(int tile, uint32_t first, uint32_t count, VolumePathTracer& tracer,
+                                 Film& film) const {
+    const SimplePathTracer simple(scene_, settings_.path);
+    const int columns = tilesAcross(settings_.width), left = tile % columns * kTile,
+              top = tile / columns * kTile;
+    const int right = std::min(left + kTile, settings_.width),
+              bottom = std::min(top + kTile, settings_.height);
+    for (int y = top; y < bottom; ++y)
+        for (int x = left; x < right; ++x) {
+            const uint64_t pixel = (uint64_t(uint32_t(y)) << 32) | uint32_t(x);
+            for (uint32_t sample = first; sample < first + count; ++sample) {
+                Sampler sampler(settings_.seed, pixel, sample);
+                const CameraRays::CameraRay ray = camera_.through(x, y, sampler.next2());
+                TermLight light;
+                if (settings_.integrator == Integrator::Simple)
+                    simple.trace(ray, sampler, light);
+                else
+                    tracer.trace(ray, sampler, light);
+                film.add(x, y, sample, light);
+            }
+        }
+}
+
+bool ReferenceRender::addSamples(uint32_t samples, const std::function<bool()>& stop) {
+    tbb::enumerable_thread_specific<VolumePathTracer> tracers(
+        [this] { return VolumePathTracer(scene_, settings_.path); });
+    std::atomic<bool> stopped{false};
+    const int tiles = tilesAcross(settings_.width) * tilesAcross(settings_.height);
+    const uint32_t first = film_.samples();
+    tbb::task_arena arena(settings_.threads > 0 ? settings_.threads : tbb::task_arena::automatic);
+    arena.execute([&] {
+        tbb::parallel_for(
+            tbb::blocked_range<int>(0, tiles, 1),
+            [&](const tbb::blocked_range<int>& range) {
+                for (int tile = range.begin(); tile < range.end(); ++tile) {
+                    if (stopped || (stop && stop())) {
+                        stopped = true;
+                        return;
+                    }
+                    renderTile(tile, first, samples, tracers.local(), film_);
+                }
+            },
+            tbb::simple_partitioner());
+    });
+    if (stopped) return false;
+    film_.setSamples(first + samples);
+    for (const VolumePathTracer& tracer : tracers) counts_.add(tracer.counts());
+    return true;
+}
+
+} // namespace tyndall::reference

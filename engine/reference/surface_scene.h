@@ -1,0 +1,102 @@
+#pragma once
+// The surfaces of a scene for rays: triangles in Embree, and what is at the point where one is hit.
+//
+// Surfaces with holes (MASK) or of partial coverage (BLEND) let a ray pass by chance, decided by the ray's own random
+// number. One-sided surfaces seen from behind are passed by camera rays alone. Lines and points have no area: no ray meets them.
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/result.h"
+#include "reference/bsdf.h"
+#include "reference/material_eval.h"
+
+struct RTCDeviceTy;
+struct RTCSceneTy;
+
+namespace tyndall::reference {
+
+/// One mesh at one place. Vertices are rounded to single precision in the space of rays.
+struct MeshInstance {
+    const Mesh* mesh = nullptr;
+    const Material* material = nullptr;
+    mat3 normalFromMesh{1}; // inverse transpose; sign of the determinant left in
+    mat3 rayFromMesh{1};    // of vectors: tangents
+    bool mirrored = false;
+    std::vector<vec3> positions;
+    uint32_t firstEmitter =
+        0; // number of its first triangle among all that emit; kNoEmitter: it does not
+    static constexpr uint32_t kNoEmitter = 0xffffffffu;
+};
+
+struct RayHit {
+    double distance = kInfinity;
+    uint32_t instance = 0, triangle = 0;
+    double u = 0, v = 0; // barycentric, of corners 1 and 2
+    [[nodiscard]] bool found() const { return distance < kInfinity; }
+};
+
+/// A point of a surface, as the path that met it sees it.
+struct SurfacePoint {
+    dvec3 position{0};
+    Surface surface;
+    dvec3 emission{0}; // nits towards where the path came from
+    bool unlit = false;
+    uint32_t emitter = MeshInstance::kNoEmitter; // its triangle's number among those that emit
+    double margin = 0; // metres by which rays from here must start off the surface
+};
+
+enum class RayKind { Camera = 0, Path = 1 };
+
+class SurfaceScene {
+public:
+    /// `origin`: the world's point that becomes the origin of ray space. `scene` must outlive this.
+    /// Errors: more triangles than 32-bit numbers can name, or than Embree gets memory for.
+    static Result<std::unique_ptr<SurfaceScene>> build(const Scene& scene, const dvec3& origin,
+                                                       int threads);
+    ~SurfaceScene();
+    SurfaceScene(const SurfaceScene&) = delete;
+    SurfaceScene& operator=(const SurfaceScene&) = delete;
+
+    /// The first surface between `nearest` and `farthest` along the ray. `chance` decides at surfaces of partial coverage.
+    [[nodiscard]] RayHit intersect(const Ray& ray, double nearest, double farthest, RayKind kind,
+                                   uint64_t chance) const;
+    /// Does a surface lie between the two ends of the ray? `farthest` may be infinite.
+    [[nodiscard]] bool occluded(const Ray& ray, double farthest, uint64_t chance) const;
+    [[nodiscard]] SurfacePoint pointAt(const Ray& ray, const RayHit& hit) const;
+
+    [[nodiscard]] const std::vector<MeshInstance>& instances() const { return instances_; }
+    [[nodiscard]] std::vector<MeshInstance>& mutableInstances() { return instances_; }
+    [[nodiscard]] const MaterialReader& materials() const { return materials_; }
+    [[nodiscard]] size_t triangleCount() const { return triangleCount_; }
+    /// Of all triangles, in ray space; empty without any.
+    [[nodiscard]] const Bounds& bounds() const { return bounds_; }
+    /// Sentences on what is left out.
+    [[nodiscard]] const std::vector<std::string>& notes() const { return notes_; }
+    /// Coverage at a point of a triangle: for Embree's filter.
+    [[nodiscard]] double coverageAt(uint32_t instance, uint32_t triangle, double u, double v) const;
+
+private:
+    explicit SurfaceScene(const Scene& scene) : materials_(scene) {}
+    void addMesh(const Scene& scene, const Mesh& mesh, const dmat4& rayFromMesh);
+    Result<void> buildTree(int threads);
+    [[nodiscard]] VertexValues vertexValues(const RayHit& hit) const;
+
+    RTCDeviceTy* device_ = nullptr;
+    RTCSceneTy* tree_ = nullptr;
+    std::vector<MeshInstance> instances_;
+    MaterialReader materials_;
+    size_t triangleCount_ = 0;
+    Bounds bounds_;
+    std::vector<std::string> notes_;
+};
+
+/// Where a path goes on from a surface, in this direction: off the surface by its margin.
+inline Ray rayFrom(const SurfacePoint& point, const dvec3& direction) {
+    const dvec3& n = point.surface.geometricNormal;
+    const double side = glm::dot(n, direction) >= 0 ? point.margin : -point.margin;
+    return {point.position + side * n, direction};
+}
+
+} // namespace tyndall::reference

@@ -1,0 +1,340 @@
+#include "reference/volume_path_tracer.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/sampling.h"
+
+namespace tyndall::reference {
+namespace {
+
+/// Paths are ended by chance once they carry less than this, and raised to it when they go on.
+constexpr double kRouletteWeight = 0.25;
+constexpr double kLeastSurvival = 0.05;
+/// Behind the first segment, the chance of aiming from a segment follows how much it scatters, but is not less than this.
+constexpr double kLeastAimChance = 0.1;
+
+} // namespace
+
+void PathCounts::add(const PathCounts& other) {
+    paths += other.paths;
+    segments += other.segments;
+    shadowRays += other.shadowRays;
+    cutOff += other.cutOff;
+    nonFinite += other.nonFinite;
+    negative += other.negative;
+}
+
+VolumePathTracer::VolumePathTracer(const TracerScene& scene, const PathSettings& settings)
+    : scene_(scene), settings_(settings), segment_(*scene.media) {
+    const int longest = longestPath(settings_.terms);
+    if (longest >= 0 && (settings_.maxScatterings < 0 || longest < settings_.maxScatterings))
+        settings_.maxScatterings = longest;
+}
+
+void VolumePathTracer::see(Term term, const dvec3& light) {
+    if (!(settings_.terms & bit(term))) return;
+    for (int c = 0; c < 3; ++c) {
+        if (!std::isfinite(light[c])) {
+            ++counts_.nonFinite;
+            return;
+        }
+        counts_.negative += light[c] < 0;
+    }
+    light_->add(term, light);
+}
+
+void VolumePathTracer::trace(const CameraRays::CameraRay& start, Sampler& sampler,
+                             TermLight& light) {
+    ++counts_.paths;
+    sampler_ = &sampler;
+    light_ = &light;
+    weights_ = {};
+    if (!scene_.media->grey()) weights_.hero = std::min(2, int(3 * sampler.next1()));
+    history_ = {};
+    origin_ = {};
+    const bool hasMedia = !scene_.media->empty();
+    Ray ray = start.ray;
+    double nearest = start.nearest;
+    for (;; nearest = 0) {
+        ++counts_.segments;
+        const RayKind kind = history_.count() == 0 ? RayKind::Camera : RayKind::Path;
+        const RayHit hit =
+            scene_.surfaces->intersect(ray, nearest, kInfinity, kind, sampler.bits());
+        MediaSegment::Flight flight{false, hit.distance};
+        const bool last = history_.count() == settings_.maxScatterings;
+        aimChance_ = 0;
+        if (hasMedia) {
+            segment_.start(ray, hit.distance);
+            if (!last) aimFromSegment(ray);
+            dvec3 emitted(0);
+            if (!origin_.camera) meetLamps(ray, hit.distance);
+            flight = segment_.fly(sampler, weights_, point_, emitted);
+            if (emitted != dvec3(0)) see(history_.term(), emitted);
+        } else if (!origin_.camera) {
+            meetLamps(ray, hit.distance);
+        }
+        if (flight.collided) {
+            if (last || weights_.throughput == dvec3(0)) return;
+            scatterInMedium(flight.distance, ray);
+        } else if (!hit.found()) {
+            meetEnvironment(ray);
+            return;
+        } else {
+            const SurfacePoint point = scene_.surfaces->pointAt(ray, hit);
+            meetEmitter(point);
+            if (last || point.unlit) return;
+            scatterAtSurface(point, ray);
+        }
+        if (weights_.throughput == dvec3(0) || !survives()) return;
+        if (history_.count() >= PathSettings::kLongest) {
+            ++counts_.cutOff;
+            return;
+        }
+    }
+}
+
+bool VolumePathTracer::survives() {
+    const double carried = maximumOf(weights_.carried());
+    if (!(carried > 0)) return false;
+    if (carried >= kRouletteWeight || history_.count() < 3) return true;
+    const double survival = std::max(carried / kRouletteWeight, kLeastSurvival);
+    if (!(sampler_->random() < survival)) return false;
+    weights_.throughput /= survival;
+    return true;
+}
+
+dvec3 VolumePathTracer::arriving(const AimedSample& aimed, const Ray& ray) {
+    ++counts_.shadowRays;
+    if (aimed.shadowed && scene_.surfaces->occluded(ray, aimed.distance, sampler_->bits()))
+        return dvec3(0);
+    if (scene_.media->empty()) return aimed.radiance;
+    return aimed.radiance *
+           transmittance(*scene_.media, ray, aimed.distance, settings_.transmittance, *sampler_);
+}
+
+// --- Surfaces.
+
+void VolumePathTracer::scatterAtSurface(const SurfacePoint& point, Ray& ray) {
+    const dvec3 before = ray.direction;
+    history_.add(Scattering::Surface);
+    const Bsdf bsdf(point.surface, -before);
+    fromPoint_.clear();
+    if (settings_.aimAtLights) aimFromSurface(point, bsdf);
+    const double choice = sampler_->next1();
+    const BsdfSample sample = bsdf.sample(choice, sampler_->next2());
+    weights_.throughput *= sample.weight;
+    origin_ = {};
+    origin_.camera = false;
+    origin_.directionDensity = sample.density;
+    origin_.position = point.position;
+    ray = rayFrom(point, sample.direction);
+}
+
+void VolumePathTracer::aimFromSurface(const SurfacePoint& point, const Bsdf& bsdf) {
+    scene_.lights->choose(point.position, false, fromPoint_);
+    if (fromPoint_.empty()) return;
+    double u = sampler_->next1();
+    const size_t light = Lights::pick(fromPoint_, u);
+    const AimedSample aimed = scene_.lights->aim(light, point.position, u, sampler_->next2());
+    if (!aimed.valid()) return;
+    const dvec3 reflected = bsdf.evaluate(aimed.direction);
+    if (!(maximumOf(reflected) > 0)) return;
+    const double density = aimed.density * fromPoint_.chance(light);
+    const double met = aimed.delta ? 0 : bsdf.density(aimed.direction);
+    const dvec3 light3 = arriving(aimed, rayFrom(point, aimed.direction));
+    see(history_.term(), weights_.carried() * reflected * light3 / (density + met));
+}
+
+// --- Media.
+
+void VolumePathTracer::scatterInMedium(double distance, Ray& ray) {
+    const dvec3 before = ray.direction, position = ray.at(distance);
+    history_.add(Scattering::Medium);
+    Origin next;
+    next.camera = false;
+    next.inMedium = true;
+    next.position = position;
+    next.segment = ray;
+    next.distance = distance;
+    next.flightDensity = segment_.flightDensity(distance);
+    next.aimedFromSegment = aimChance_;
+    if (aimChance_ > 0) {
+        next.reach = reach_;
+        next.collisionDensity = segment_.collisionDensity(distance);
+        std::swap(fromSegment_, alongSegment_);
+    }
+    origin_ = next;
+    fromPoint_.clear();
+    if (settings_.aimAtLights) aimFromCollision(position, before);
+    const double choice = sampler_->next1();
+    const dvec3 after = point_.samplePhase(weights_.hero, before, choice, sampler_->next2());
+    const dvec3 density = point_.phase(before, after);
+    // For weighing ways against each other any density will do that all of them can name: the mean over the channels.
+    origin_.directionDensity = meanOf(density);
+    weights_.scale(density, density);
+    ray = {position, after};
+}
+
+void VolumePathTracer::aimFromCollision(const dvec3& position, const dvec3& before) {
+    scene_.lights->choose(position, false, fromPoint_);
+    if (fromPoint_.empty()) return;
+    double u = sampler_->next1();
+    const size_t light = Lights::pick(fromPoint_, u);
+    const AimedSample aimed = scene_.lights->aim(light, position, u, sampler_->next2());
+    if (!aimed.valid()) return;
+    const dvec3 phase = point_.phase(before, aimed.direction);
+    const double density = aimed.density * fromPoint_.chance(light);
+    double met = 0;
+    if (!aimed.delta) met = meanOf(phase);
+    double drawn = 0; // by aimFromSegment, in units of flightDensity
+    if (origin_.aimedFromSegment > 0 && origin_.flightDensity > 0)
+        drawn = aimed.density * origin_.aimedFromSegment * fromSegment_.chance(light) *
+                distanceDensity(light, origin_.segment, origin_.reach, origin_.distance,
+                                origin_.collisionDensity) /
+                origin_.flightDensity;
+    const double weight = density / (density + met + drawn);
+    const dvec3 light3 = arriving(aimed, {position, aimed.direction});
+    see(history_.term(), weights_.carried() * phase * light3 * (weight / density));
+}
+
+/// Per metre, of the place that aimFromSegment draws for this light.
+double VolumePathTracer::distanceDensity(size_t light, const Ray& ray, Interval reach, double t,
+                                         double collisionDensity) const {
+    const auto& lamps = scene_.lights->lamps();
+    if (light >= lamps.size() || !lamps[light].local()) return collisionDensity;
+    if (!(t >= reach.begin && t <= reach.end)) return 0;
+    const dvec3 start = ray.at(reach.begin);
+    const double nearest = glm::dot(lamps[light].centre() - start, ray.direction);
+    const double height = glm::length(lamps[light].centre() - start - nearest * ray.direction);
+    return equiangularDensity(t - reach.begin, nearest, height, reach.end - reach.begin);
+}
+
+void VolumePathTracer::aimFromSegment(const Ray& ray) {
+    if (!settings_.aimFromSegments || !settings_.aimAtLights || !scene_.media->scatters()) return;
+    reach_ = segment_.reach();
+    if (reach_.empty() || !std::isfinite(reach_.end)) return;
+    scene_.lights->chooseAlong({ray.at(reach_.begin), ray.direction}, reach_.end - reach_.begin,
+                               alongSegment_);
+    if (alongSegment_.empty()) return;
+    const double likely =
+        history_.count() == 0
+            ? 1
+            : std::clamp(2 * segment_.collisionChance() * maximumOf(weights_.carried()),
+                         kLeastAimChance, 1.0);
+    aimChance_ = likely;
+    if (likely < 1 && !(sampler_->random() < likely)) return;
+
+    double u = sampler_->next1();
+    const double v = sampler_->next1();
+    const dvec2 w = sampler_->next2();
+    const size_t light = Lights::pick(alongSegment_, u);
+    const auto& lamps = scene_.lights->lamps();
+    double t = 0;
+    if (light < lamps.size() && lamps[light].local()) {
+        const dvec3 start = ray.at(reach_.begin);
+        const double nearest = glm::dot(lamps[light].centre() - start, ray.direction);
+        const double height = glm::length(lamps[light].centre() - start - nearest * ray.direction);
+        t = reach_.begin +
+            sampleEquiangular(v, nearest, height, reach_.end - reach_.begin).distance;
+    } else {
+        t = segment_.drawCollision(v).distance;
+    }
+    const double distance = distanceDensity(light, ray, reach_, t, segment_.collisionDensity(t));
+    if (!(distance > 0)) return;
+    const dvec3 position = ray.at(t);
+    aimedPoint_.clear();
+    for (const MediumSource& medium : scene_.media->media())
+        aimedPoint_.add(medium, medium.density(position));
+    if (aimedPoint_.scattering == dvec3(0)) return;
+
+    AimedSample aimed;
+    dvec3 phase;
+    double
+        met; // the density of a collision there that then meets the light, over that of the collision
+    double collided = 0; // of aimFromCollision, likewise
+    const bool even =
+        light == scene_.lights->environmentIndex() && scene_.lights->environment().constant();
+    if (even) { // light from all around: the phase function is the best to draw from
+        aimed.direction = aimedPoint_.samplePhase(weights_.hero, ray.direction, u, w);
+        phase = aimedPoint_.phase(ray.direction, aimed.direction);
+        aimed.distance = kInfinity;
+        aimed.radiance = scene_.lights->environment().radiance(aimed.direction);
+        aimed.density = met = meanOf(phase);
+    } else {
+        aimed = scene_.lights->aim(light, position, u, w);
+        if (!aimed.valid()) return;
+        phase = aimedPoint_.phase(ray.direction, aimed.direction);
+        met = aimed.delta ? 0 : meanOf(phase);
+        scene_.lights->choose(position, false, fromCollision_);
+        collided = aimed.density * fromCollision_.chance(light);
+    }
+    if (!aimed.valid()) return;
+    const double density = aimed.density * distance * likely * alongSegment_.chance(light);
+    const double others = segment_.flightDensity(t) * (met + collided);
+    const dvec3 toHere = transmittance(*scene_.media, ray, t, settings_.transmittance, *sampler_);
+    const dvec3 light3 = arriving(aimed, {position, aimed.direction});
+    see(history_.termAfter(Scattering::Medium),
+        weights_.carried() * toHere * aimedPoint_.scattering * phase * light3 / (density + others));
+}
+
+// --- Light met by chance.
+
+double VolumePathTracer::aimedDensity(size_t light, double density) const {
+    if (!settings_.aimAtLights || density <= 0) return 0;
+    double sum =
+        fromPoint_.empty() ? 0 : fromPoint_.chance(light) * density * origin_.flightDensity;
+    if (origin_.inMedium && origin_.aimedFromSegment > 0)
+        sum += density * origin_.aimedFromSegment * fromSegment_.chance(light) *
+               distanceDensity(light, origin_.segment, origin_.reach, origin_.distance,
+                               origin_.collisionDensity);
+    return sum;
+}
+
+/// The share of the light met that this way of finding it stands for.
+double VolumePathTracer::meetingWeight(size_t light, double density) const {
+    const double own = origin_.directionDensity * origin_.flightDensity;
+    const double aimed = aimedDensity(light, density);
+    if (!(aimed > 0)) return 1;
+    return own > 0 ? own / (own + aimed) : 0;
+}
+
+// Lamps let rays pass. What comes from one is not left to whether the flight gets there: its expectation is as easily had.
+void VolumePathTracer::meetLamps(const Ray& ray, double end) {
+    const auto& lamps = scene_.lights->lamps();
+    for (size_t i = 0; i < lamps.size(); ++i) {
+        if (lamps[i].delta()) continue;
+        const LightSample met = lamps[i].meet(ray);
+        if (!(met.density > 0) || !(met.distance < end || std::isinf(end))) continue;
+        const dvec3 through =
+            transmittance(*scene_.media, ray, met.distance, settings_.transmittance, *sampler_);
+        see(history_.term(),
+            weights_.carried() * through * met.radiance * meetingWeight(i, met.density));
+    }
+}
+
+void VolumePathTracer::meetEnvironment(const Ray& ray) {
+    const EnvironmentSource& environment = scene_.lights->environment();
+    if (environment.black()) return;
+    double weight = 1;
+    if (!origin_.camera) {
+        double density = environment.density(ray.direction);
+        // Aimed at along the phase function, see aimFromSegment.
+        if (environment.constant() && origin_.inMedium) density = origin_.directionDensity;
+        if (!environment.constant() || origin_.inMedium)
+            weight = meetingWeight(scene_.lights->environmentIndex(), density);
+    }
+    see(history_.term(), weights_.carried() * environment.radiance(ray.direction) * weight);
+}
+
+void VolumePathTracer::meetEmitter(const SurfacePoint& point) {
+    if (point.emission == dvec3(0) || (point.unlit && !origin_.camera)) return;
+    double weight = 1;
+    if (!origin_.camera && point.emitter != MeshInstance::kNoEmitter)
+        weight = meetingWeight(
+            scene_.lights->trianglesIndex(),
+            scene_.lights->emitterDensity(point.emitter, origin_.position, point.position));
+    see(history_.term(), weights_.carried() * point.emission * weight);
+}
+
+} // namespace tyndall::reference

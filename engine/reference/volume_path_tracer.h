@@ -1,0 +1,84 @@
+#pragma once
+// The fast path tracer. Light arrives at a path's vertices in up to four ways, weighed against each other by the balance
+// heuristic, so that each way of light is counted once:
+//
+//   at a surface   aimed at a light, or met by the direction that the BSDF draws;
+//   in a medium    aimed at a light from where free flight collided, or from a point drawn on the segment for that light
+//                  (equiangular about lamps, by the media's depth for the rest), or met by the direction that the phase function draws.
+//
+// Media are flown through by null collisions under spectral multiple importance sampling (PathWeights). Paths that carry little end by
+// chance; the others are raised to a fixed weight, never beyond it.
+
+#include "reference/tracer_scene.h"
+
+namespace tyndall::reference {
+
+/// What went on in all paths so far.
+struct PathCounts {
+    uint64_t paths = 0, segments = 0, shadowRays = 0;
+    uint64_t cutOff = 0;    // paths ended by PathSettings::kLongest
+    uint64_t nonFinite = 0; // contributions that were not finite, left out
+    uint64_t negative = 0;  // contributions below 0
+    void add(const PathCounts& other);
+};
+
+/// One for each thread: it keeps its scratch memory from path to path.
+class VolumePathTracer {
+public:
+    VolumePathTracer(const TracerScene& scene, const PathSettings& settings);
+
+    void trace(const CameraRays::CameraRay& start, Sampler& sampler, TermLight& light);
+    [[nodiscard]] const PathCounts& counts() const { return counts_; }
+
+private:
+    /// What the vertex that a segment starts from could have done instead of the direction it went.
+    struct Origin {
+        bool camera = true; // no light is aimed at from there
+        bool inMedium = false;
+        double directionDensity = 0; // of the direction that it went, per steradian, all channels
+        double flightDensity = 1;    // of the vertex' place on its own segment; 1 for surfaces
+        dvec3 position{0};
+        // For vertices in media: the segment they lie on.
+        Ray segment;
+        double distance = 0;
+        Interval reach;
+        double aimedFromSegment = 0; // chance that aimFromSegment was called
+        double collisionDensity = 0;
+    };
+    void aimFromSurface(const SurfacePoint& point, const Bsdf& bsdf);
+    void aimFromCollision(const dvec3& position, const dvec3& before);
+    void aimFromSegment(const Ray& ray);
+    void meetLamps(const Ray& ray, double end);
+    void meetEnvironment(const Ray& ray);
+    void meetEmitter(const SurfacePoint& point);
+    /// Of the origin's ways to aim at `light`, in the measure of directionDensity times flightDensity.
+    [[nodiscard]] double aimedDensity(size_t light, double density) const;
+    [[nodiscard]] double meetingWeight(size_t light, double density) const;
+    [[nodiscard]] double distanceDensity(size_t light, const Ray& ray, Interval reach, double t,
+                                         double collisionDensity) const;
+    [[nodiscard]] dvec3 arriving(const AimedSample& aimed, const Ray& ray);
+    void scatterAtSurface(const SurfacePoint& point, Ray& ray);
+    void scatterInMedium(double distance, Ray& ray);
+    bool survives();
+    void see(Term term, const dvec3& light);
+
+    const TracerScene& scene_;
+    PathSettings settings_;
+    PathCounts counts_;
+
+    // Of the present path.
+    Sampler* sampler_ = nullptr;
+    TermLight* light_ = nullptr;
+    PathWeights weights_;
+    PathHistory history_;
+    Origin origin_;
+    MediaSegment segment_;
+    MediumPoint point_, aimedPoint_;
+    LightChoice fromPoint_, fromSegment_; // of the origin
+    LightChoice alongSegment_;            // of the present segment
+    LightChoice fromCollision_;           // as if there were a collision where a light is aimed at
+    double aimChance_ = 0;                // of aimFromSegment on the present segment
+    Interval reach_;
+};
+
+} // namespace tyndall::reference
