@@ -38,6 +38,7 @@ private:
     Outcome renderFrame(int index);
     Outcome writeFrame(int index);
     Outcome writeExrFrame(const std::string& path, Image beauty);
+    [[nodiscard]] double displayedEv100() const;
     [[nodiscard]] ImageMetadata metadata() const;
     void count(const Image& image);
     void describe();
@@ -145,6 +146,13 @@ Outcome Capture::writeExrFrame(const std::string& path, Image beauty) {
         ExitStatus::Failed);
 }
 
+/// What a .png of the same frame would be exposed at.
+double Capture::displayedEv100() const {
+    const Result<std::string> compensation =
+        session_->renderer().settings().get("post.exposureCompensation");
+    return double(session_->ev100()) - std::stod(compensation.value());
+}
+
 ImageMetadata Capture::metadata() const {
     std::string settings;
     for (const std::string& assignment : session_->renderer().settings().differences())
@@ -154,6 +162,7 @@ ImageMetadata Capture::metadata() const {
             {"tyndall.version", TYNDALL_VERSION},
             {"tyndall.seed", std::to_string(options_.render.seed)},
             {"tyndall.settings", settings},
+            {"tyndall.ev100", fmt::format("{:g}", displayedEv100())},
             {"tyndall.technique", result_.plan.technique},
             {"tyndall.terms", termNames(result_.plan.rendered)},
             {"tyndall.frames", std::to_string(report_.frames.size())},

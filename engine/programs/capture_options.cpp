@@ -2,13 +2,13 @@
 
 #include <algorithm>
 #include <array>
-#include <filesystem>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include "programs/output_file.h"
+
 namespace tyndall {
-namespace fs = std::filesystem;
 namespace {
 
 constexpr std::array<std::string_view, 5> kAovs = {"depth", "normal", "albedo", "transmittance",
@@ -27,16 +27,6 @@ FrameNumber findFrameNumber(const std::string& text) {
             width = width * 10 + size_t(text[end++] - '0');
         if (end < text.size() && text[end] == 'd' && width <= 12) return {at, end + 1 - at, width};
     }
-    return {};
-}
-
-Result<void> checkFolder(const char* option, const std::string& file) {
-    if (file.empty()) return {};
-    const fs::path folder = fs::path(file).parent_path();
-    std::error_code error;
-    if (!folder.empty() && !fs::is_directory(folder, error))
-        return Error{fmt::format("{} {}: there is no folder '{}'; make it first", option, file,
-                                 folder.string())};
     return {};
 }
 
@@ -113,7 +103,7 @@ Result<void> checkCaptureOptions(const CaptureOptions& options) {
     for (const auto& [option, file] :
          {std::pair("-o", &options.output), std::pair("--report", &options.report),
           std::pair("--trace", &options.trace)})
-        if (Result<void> folder = checkFolder(option, *file); !folder.ok()) return folder;
+        if (Result<void> folder = checkOutputFolder(option, *file); !folder.ok()) return folder;
     return {};
 }
 

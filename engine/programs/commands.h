@@ -23,6 +23,7 @@ struct GlobalOptions {
 using Run = std::function<Outcome(const GlobalOptions&)>;
 
 void addCaptureCommand(CLI::App& program, Run& run);
+void addCompareCommand(CLI::App& program, Run& run);
 void addGraphCommand(CLI::App& program, Run& run);
 void addInfoCommand(CLI::App& program, Run& run);
 

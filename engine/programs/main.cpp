@@ -20,6 +20,7 @@ namespace {
 constexpr const char* kExamples =
     "Examples:\n"
     "  tyndall capture content/demo.scene.json -o out/demo.png\n"
+    "  tyndall compare out/fast.exr out/reference.exr --heatmap out/where.png\n"
     "  tyndall graph content/demo.scene.json --format dot | dot -Tsvg -o graph.svg\n"
     "  tyndall info smoke.vdb\n"
     "\n'tyndall COMMAND --help' tells more.";
@@ -60,7 +61,7 @@ Outcome checkCommandName(const CLI::App& program, std::string_view word) {
     const std::string nearest =
         nearestName(word, std::vector<std::string_view>(names.begin(), names.end()));
     return wrongInput(fmt::format("'{}' is not a command: {}", word,
-                                  nearest.empty() ? "there are capture, graph and info"
+                                  nearest.empty() ? "there are capture, compare, graph and info"
                                                   : "did you mean '" + nearest + "'?"));
 }
 
@@ -76,6 +77,7 @@ int run(int argc, char** argv) {
     GlobalOptions options;
     Run chosen;
     addCaptureCommand(program, chosen);
+    addCompareCommand(program, chosen);
     addGraphCommand(program, chosen);
     addInfoCommand(program, chosen);
     for (CLI::App* place : program.get_subcommands({}))
@@ -84,7 +86,7 @@ int run(int argc, char** argv) {
 
     if (argc == 1) {
         std::fputs(program.help().c_str(), stderr);
-        return finish(wrongInput("say what to do: capture, graph or info"));
+        return finish(wrongInput("say what to do: capture, compare, graph or info"));
     }
     if (const Outcome known = checkCommandName(program, argv[1]); !known.ok()) return finish(known);
     try {

@@ -23,6 +23,7 @@ public:
 
     /// For the first frame; time, terms, technique, camera and seed as on the command line.
     [[nodiscard]] const FrameRequest& request() const { return request_; }
+    [[nodiscard]] float ev100() const { return scene_.ev100; }
     [[nodiscard]] Renderer& renderer() { return *renderer_; }
     [[nodiscard]] gl::Context& context() { return context_; }
     /// Destroys the renderer; what is alive in the context after that was leaked.

@@ -22,11 +22,11 @@ using ::testing::StartsWith;
 TEST(CommandLine, HelpHasExamplesAndListsOnlyWhatThereIs) {
     const ProcessResult help = tyndall({"--help"});
     EXPECT_EQ(help.status, 0) << help.err;
-    EXPECT_THAT(help.out, AllOf(HasSubstr("Examples:"), HasSubstr("capture"), HasSubstr("graph"),
-                                HasSubstr("info")));
-    for (const char* absent : {"reference", "compare", "bench", "stress"})
-        EXPECT_THAT(help.out, Not(HasSubstr(absent)));
-    for (const char* command : {"capture", "graph", "info"}) {
+    EXPECT_THAT(help.out, AllOf(HasSubstr("Examples:"), HasSubstr("capture"), HasSubstr("compare"),
+                                HasSubstr("graph"), HasSubstr("info")));
+    for (const char* absent : {"reference", "bench", "stress"})
+        EXPECT_THAT(help.out, Not(HasSubstr("\n  " + std::string(absent) + " ")));
+    for (const char* command : {"capture", "compare", "graph", "info"}) {
         const ProcessResult each = tyndall({command, "--help"});
         EXPECT_EQ(each.status, 0) << each.err;
         EXPECT_THAT(each.out, HasSubstr("Examples:")) << command;
@@ -42,6 +42,16 @@ TEST(CommandLine, CaptureHelpHasEveryOptionOfTheInterface) {
           "--time ", "--converge", "--camera", "--seed",    "--device",
           "--aov",   "--report",   "--trace",  "--max-ms",  "--fail-on-nonfinite",
           "--quiet"})
+        EXPECT_THAT(help, HasSubstr(option));
+}
+
+TEST(CommandLine, CompareHelpHasEveryOption) {
+    const std::string help = tyndall({"compare", "--help"}).out;
+    for (const char* option :
+         {"--terms", "--layer", "--ev100", "--tone-curve", "--json", "--heatmap ",
+          "--heatmap-metric", "--heatmap-max", "--max-rmse", "--max-relmse ",
+          "--max-relmse-trimmed", "--max-mrse", "--max-smape", "--max-p999", "--max-energy-error",
+          "--min-psnr", "--min-ssim", "--max-flip", "--quiet"})
         EXPECT_THAT(help, HasSubstr(option));
 }
 
@@ -63,7 +73,7 @@ struct Refusal {
 
 /// SCENE and OUT stand for a good scene and a good output.
 const Refusal kRefusals[] = {
-    {"no command", {}, "capture, graph or info"},
+    {"no command", {}, "capture, compare, graph or info"},
     {"an unknown command", {"captur"}, "did you mean 'capture'?"},
     {"an unknown option",
      {"capture", "SCENE", "-o", "OUT", "--frame", "2"},
@@ -104,6 +114,18 @@ const Refusal kRefusals[] = {
      "no.such.setting"},
     {"no assignment", {"capture", "SCENE", "-o", "OUT", "--set", "novalue"}, "KEY=VALUE"},
     {"a technique that is not there", {"capture", "SCENE", "-o", "OUT", "--gi", "lpv"}, "octaves"},
+    {"no reference", {"compare", "a.exr"}, "B is required"},
+    {"an image that is not there", {"compare", "nosuch.exr", "b.exr"}, "nosuch.exr"},
+    {"an image of no known kind", {"compare", "a.tiff", "b.exr"}, ".exr, .hdr or .png"},
+    {"terms and a layer at once",
+     {"compare", "a.exr", "b.exr", "--terms", "LE", "--layer", "depth"},
+     "--layer"},
+    {"a limit that is no number",
+     {"compare", "a.exr", "b.exr", "--max-flip", "small"},
+     "--max-flip"},
+    {"a misspelt limit",
+     {"compare", "a.exr", "b.exr", "--max-relmsee", "1"},
+     "did you mean '--max-relmse'?"},
     {"an unknown format", {"graph", "SCENE", "--format", "svg"}, "text"},
     {"an unknown kind of file", {"info", "scene.txt"}, "scene.txt"},
     {"a file that is not there", {"info", "nosuch.vdb"}, "nosuch.vdb"},
