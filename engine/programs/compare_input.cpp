@@ -84,6 +84,15 @@ TermSet termsOfLayer(std::string_view name) {
     return set;
 }
 
+/// "'LVVE', 'LXVVE'".
+std::string quoted(TermSet set) {
+    std::string text;
+    for (uint32_t i = 0; i < kTermCount; ++i)
+        if (set & bit(Term(i)))
+            text += fmt::format("{}'{}'", text.empty() ? "" : ", ", termName(Term(i)));
+    return text;
+}
+
 /// The layers whose sum the wanted terms are.
 Result<std::vector<const ImageLayer*>> layersOfTerms(const fs::path& path, const ExrFile& file,
                                                      TermSet wanted) {
@@ -100,8 +109,8 @@ Result<std::vector<const ImageLayer*>> layersOfTerms(const fs::path& path, const
         layers.push_back(&layer);
     }
     if (const TermSet missing = wanted & ~covered)
-        return Error{fmt::format("--terms: '{}' has no layer '{}': there are {}", path.string(),
-                                 termNames(missing), layerNames(file))};
+        return Error{fmt::format("--terms: '{}' has no layer {}: there are {}", path.string(),
+                                 quoted(missing), layerNames(file))};
     return layers;
 }
 

@@ -171,6 +171,8 @@ TEST_F(CompareTest, WhatIsNotInAFileIsNamedTogetherWithWhatIs) {
     write("bare.exr", {{"", plain(1, 1, 1)}});
     expectRefused({"a.exr", "b.exr", "--terms", "LE,LVE"},
                   "'a.exr' has no layer 'LVE': there are the picture, LE, LSE");
+    expectRefused({"a.exr", "b.exr", "--terms", "LE,LVE,LVVE"},
+                  "has no layer 'LVE', 'LVVE': there");
     expectRefused({"a.exr", "bare.exr", "--terms", "LE"}, "'bare.exr' has no layer 'LE'");
     expectRefused({"a.exr", "b.exr", "--layer", "depth"}, "'a.exr' has no layer 'depth'");
     write("nothing.exr", {{"LE", plain(1, 1, 1)}});
