@@ -26,5 +26,6 @@ void addCaptureCommand(CLI::App& program, Run& run);
 void addCompareCommand(CLI::App& program, Run& run);
 void addGraphCommand(CLI::App& program, Run& run);
 void addInfoCommand(CLI::App& program, Run& run);
+void addReferenceCommand(CLI::App& program, Run& run);
 
 } // namespace tyndall

@@ -138,7 +138,11 @@ Result<void> addTerms(ComparedImage& to, const fs::path& path, const ExrFile& fi
 void addVariance(ComparedImage& to, const fs::path& path, const ExrFile& file,
                  const ComparedPart& part) {
     const ImageLayer* variance = findLayer(file, "variance");
-    if (part.terms != 0 || !isPicture(part.layer))
+    // A reference of just these terms: their sum is its picture.
+    const auto traced = file.metadata.find("tyndall.terms");
+    const bool allOfIt = part.terms != 0 && traced != file.metadata.end() &&
+                         traced->second == termNames(part.terms);
+    if (!allOfIt && (part.terms != 0 || !isPicture(part.layer)))
         to.whyNoVariance =
             "the layer 'variance' is that of the whole picture, not of " + part.text();
     else if (!variance)

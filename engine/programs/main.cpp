@@ -20,6 +20,7 @@ namespace {
 constexpr const char* kExamples =
     "Examples:\n"
     "  tyndall capture content/demo.scene.json -o out/demo.png\n"
+    "  tyndall reference content/demo.scene.json -o out/reference.exr --size 320x180 --spp 256\n"
     "  tyndall compare out/fast.exr out/reference.exr --heatmap out/where.png\n"
     "  tyndall graph content/demo.scene.json --format dot | dot -Tsvg -o graph.svg\n"
     "  tyndall info smoke.vdb\n"
@@ -61,7 +62,7 @@ Outcome checkCommandName(const CLI::App& program, std::string_view word) {
     const std::string nearest =
         nearestName(word, std::vector<std::string_view>(names.begin(), names.end()));
     return wrongInput(fmt::format("'{}' is not a command: {}", word,
-                                  nearest.empty() ? "there are capture, compare, graph and info"
+                                  nearest.empty() ? "there are capture, compare, graph, info and reference"
                                                   : "did you mean '" + nearest + "'?"));
 }
 
@@ -80,13 +81,14 @@ int run(int argc, char** argv) {
     addCompareCommand(program, chosen);
     addGraphCommand(program, chosen);
     addInfoCommand(program, chosen);
+    addReferenceCommand(program, chosen);
     for (CLI::App* place : program.get_subcommands({}))
         place->add_flag("-q,--quiet", options.quiet, "Say nothing but warnings and errors");
     program.add_flag("-q,--quiet", options.quiet, "Say nothing but warnings and errors");
 
     if (argc == 1) {
         std::fputs(program.help().c_str(), stderr);
-        return finish(wrongInput("say what to do: capture, compare, graph or info"));
+        return finish(wrongInput("say what to do: capture, compare, graph, info or reference"));
     }
     if (const Outcome known = checkCommandName(program, argv[1]); !known.ok()) return finish(known);
     try {

@@ -14,6 +14,7 @@
 #include "programs/commands.h"
 #include "programs/interrupt.h"
 #include "programs/load_scene.h"
+#include "programs/output_file.h"
 #include "programs/render_options.h"
 #include "reference/checkpoint.h"
 #include "reference/render.h"
@@ -80,6 +81,8 @@ Outcome ReferenceRun::checkOptions() {
     if (!options_.output.ends_with(".exr"))
         return wrongInput(fmt::format(
             "-o {}: the reference writes layers, so its name must end in .exr", options_.output));
+    if (Result<void> folder = checkOutputFolder("-o", options_.output); !folder.ok())
+        return wrongInput(folder.error().message);
     if (Result<void> size = parseSize(options_.size, settings_.width, settings_.height); !size.ok())
         return wrongInput(size.error().message);
     Result<TermSet> terms = parseTerms(options_.terms);
@@ -136,7 +139,7 @@ Outcome ReferenceRun::startOrResume() {
     setupSeconds_ = now() - begun;
     std::error_code error;
     if (!options_.resume) {
-        // Better now than after an hour: is there a place to write to?
+        // Better now than after an hour: can files be written there?
         const fs::path probe = options_.output + ".probe";
         if (Result<void> written = writeFileAtomically(probe, ""); !written.ok())
             return failed(fmt::format("-o {}: {}", options_.output, written.error().message));

@@ -7,6 +7,7 @@
 
 #include "core/low_discrepancy.h"
 #include "framegraph/hash.h"
+#include "renderer/emissive_lights.h"
 #include "renderer/gpu_scene.h"
 
 namespace tyndall {
@@ -130,8 +131,8 @@ void LightSystem::collect(const LightFrame& frame) {
     const SceneVersions& now = scene.versions;
     if (scene_ != &scene || seen_.structure != now.structure ||
         seen_.transforms != now.transforms || seen_.lights != now.lights ||
-        seen_.meshes != now.meshes || seen_.media != now.media ||
-        seenOrigin_ != frame.renderOrigin) {
+        seen_.meshes != now.meshes || seen_.materials != now.materials ||
+        seen_.media != now.media || seenOrigin_ != frame.renderOrigin) {
         seen_ = now;
         seenOrigin_ = frame.renderOrigin;
         collected_.clear();
@@ -148,6 +149,10 @@ void LightSystem::collect(const LightFrame& frame) {
             if (collected_.size() > before && collected_.back().data.type != gpu::kLightDirectional)
                 bounds.include(dvec3(transforms[size_t(node)][3]));
         }
+        EmissiveLights emissive = findEmissiveLights(scene, transforms, visible);
+        for (const EmissiveLight& found : emissive.lights)
+            collectLight(found.light, found.worldFromLight, found.node, frame.renderOrigin);
+        std::move(emissive.notes.begin(), emissive.notes.end(), std::back_inserter(sceneNotes_));
         sceneRadius_ = bounds.empty() ? 0.0 : 0.5 * glm::length(bounds.extent());
         if (!(sceneRadius_ > 0) || !std::isfinite(sceneRadius_))
             sceneRadius_ = std::max(double(frame.view->data.cameraForward.w), 1e-6);

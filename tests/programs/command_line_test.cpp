@@ -23,15 +23,23 @@ TEST(CommandLine, HelpHasExamplesAndListsOnlyWhatThereIs) {
     const ProcessResult help = tyndall({"--help"});
     EXPECT_EQ(help.status, 0) << help.err;
     EXPECT_THAT(help.out, AllOf(HasSubstr("Examples:"), HasSubstr("capture"), HasSubstr("compare"),
-                                HasSubstr("graph"), HasSubstr("info")));
-    for (const char* absent : {"reference", "bench", "stress"})
+                                HasSubstr("graph"), HasSubstr("info"), HasSubstr("reference")));
+    for (const char* absent : {"bench", "stress"})
         EXPECT_THAT(help.out, Not(HasSubstr("\n  " + std::string(absent) + " ")));
-    for (const char* command : {"capture", "compare", "graph", "info"}) {
+    for (const char* command : {"capture", "compare", "graph", "info", "reference"}) {
         const ProcessResult each = tyndall({command, "--help"});
         EXPECT_EQ(each.status, 0) << each.err;
         EXPECT_THAT(each.out, HasSubstr("Examples:")) << command;
         EXPECT_EQ(each.err, "");
     }
+}
+
+TEST(CommandLine, ReferenceHelpHasEveryOptionOfTheInterface) {
+    const std::string help = tyndall({"reference", "--help"}).out;
+    for (const char* option :
+         {"SCENE", "-o,", "--size", "--spp", "--time ", "--target-error", "--terms", "--max-depth",
+          "--seed", "--threads", "--resume", "--camera", "--quiet"})
+        EXPECT_THAT(help, HasSubstr(option));
 }
 
 TEST(CommandLine, CaptureHelpHasEveryOptionOfTheInterface) {
@@ -73,7 +81,7 @@ struct Refusal {
 
 /// SCENE and OUT stand for a good scene and a good output.
 const Refusal kRefusals[] = {
-    {"no command", {}, "capture, compare, graph or info"},
+    {"no command", {}, "capture, compare, graph, info or reference"},
     {"an unknown command", {"captur"}, "did you mean 'capture'?"},
     {"an unknown option",
      {"capture", "SCENE", "-o", "OUT", "--frame", "2"},
