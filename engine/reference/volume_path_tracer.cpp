@@ -11,6 +11,8 @@ namespace {
 /// Paths are ended by chance once they carry less than this, and raised to it when they go on.
 constexpr double kRouletteWeight = 0.25;
 constexpr double kLeastSurvival = 0.05;
+/// From so many scatterings on, all paths are ended by chance, whatever they carry.
+constexpr int kLongPath = 1000;
 /// Behind the first segment, the chance of aiming from a segment follows how much it scatters, but is not less than this.
 constexpr double kLeastAimChance = 0.1;
 
@@ -97,8 +99,14 @@ void VolumePathTracer::trace(const CameraRays::CameraRay& start, Sampler& sample
 bool VolumePathTracer::survives() {
     const double carried = maximumOf(weights_.carried());
     if (!(carried > 0)) return false;
-    if (carried >= kRouletteWeight || history_.count() < 3) return true;
-    const double survival = std::max(carried / kRouletteWeight, kLeastSurvival);
+    double survival = 1;
+    if (carried < kRouletteWeight && history_.count() >= 3)
+        survival = std::max(carried / kRouletteWeight, kLeastSurvival);
+    // Matter that absorbs nothing may hold a path for ever. The part that is still followed falls as 1/n, so weights
+    // grow as n at most.
+    if (history_.count() >= kLongPath)
+        survival *= double(history_.count()) / double(history_.count() + 1);
+    if (survival == 1) return true;
     if (!(sampler_->random() < survival)) return false;
     weights_.throughput /= survival;
     return true;
