@@ -3,17 +3,16 @@
 namespace tyndall {
 namespace {
 
-uint32_t reverseBits(uint32_t x) {
-    x = ((x >> 1) & 0x55555555u) | ((x & 0x55555555u) << 1);
-    x = ((x >> 2) & 0x33333333u) | ((x & 0x33333333u) << 2);
+inline uint32_t reverseBits(uint32_t x) {
+    x = __builtin_bswap32(x);
     x = ((x >> 4) & 0x0f0f0f0fu) | ((x & 0x0f0f0f0fu) << 4);
-    x = ((x >> 8) & 0x00ff00ffu) | ((x & 0x00ff00ffu) << 8);
-    return (x >> 16) | (x << 16);
+    x = ((x >> 2) & 0x33333333u) | ((x & 0x33333333u) << 2);
+    return ((x >> 1) & 0x55555555u) | ((x & 0x55555555u) << 1);
 }
 
 /// A permutation in which each bit depends on lower ones alone (Laine and Karras 2011, with Burley's constants): on reversed bits it is
 /// an Owen scrambling.
-uint32_t permuteUpwards(uint32_t x, uint32_t seed) {
+inline uint32_t permuteUpwards(uint32_t x, uint32_t seed) {
     x += seed;
     x ^= x * 0x6c50b47cu;
     x ^= x * 0xb82f1e52u;
@@ -22,7 +21,7 @@ uint32_t permuteUpwards(uint32_t x, uint32_t seed) {
     return x;
 }
 
-uint32_t scramble(uint32_t x, uint32_t seed) {
+inline uint32_t scramble(uint32_t x, uint32_t seed) {
     return reverseBits(permuteUpwards(reverseBits(x), seed));
 }
 
@@ -47,7 +46,8 @@ uint64_t mix(uint64_t x) {
 dvec2 lowDiscrepancyPoint(uint32_t index, uint64_t key) {
     const uint64_t a = mix(key), b = mix(a);
     const uint32_t shuffled = scramble(index, uint32_t(a));
-    const uint32_t x = scramble(reverseBits(shuffled), uint32_t(a >> 32)),
+    // Scrambling the radical inverse: its two reversals cancel one of scramble's.
+    const uint32_t x = reverseBits(permuteUpwards(shuffled, uint32_t(a >> 32))),
                    y = scramble(sobol1(shuffled), uint32_t(b));
     return {x * 0x1p-32, y * 0x1p-32};
 }

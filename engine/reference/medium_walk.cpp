@@ -8,8 +8,10 @@
 namespace tyndall::reference {
 namespace {
 
-/// Height fog is cut where its density has fallen by this factor: tentative collisions are real nearly nine times in ten.
+/// Height fog is cut where its density has fallen by this factor: tentative collisions are real nearly nine times in ten …
 const double kHeightFall = std::sqrt(0.5);
+/// … but not more finely than into this optical depth: where collisions are rare, so are those that are not real.
+constexpr double kThinPiece = 0.1;
 /// Above this many scale heights no fog is left: e⁻⁶⁰.
 constexpr double kHighest = 60;
 
@@ -82,26 +84,28 @@ void MediumWalk::enterBrick() {
 void MediumWalk::enterHeight() {
     const double scale = medium_->scaleHeight_;
     const double low = height_ + slope_ * begin_;
-    const double step = -scale * std::log(kHeightFall);
+    const double dense = low > 0 ? (low < kHighest * scale ? std::exp(-low / scale) : 0.0) : 1.0;
+    const double strongest = maximumOf(medium_->extinction);
+    const double step =
+        std::max(-scale * std::log(kHeightFall),
+                 kThinPiece * std::abs(slope_) / std::max(dense * strongest, 1e-300));
     double next = kInfinity; // the height at which the piece ends
-    if (slope_ > 0) {
-        next = low < 0 ? 0 : (low < kHighest * scale ? low + step : kInfinity);
-    } else if (slope_ < 0) {
-        next = low > kHighest * scale ? kHighest * scale
-                                      : (low > 0 ? std::max(0.0, low - step) : -kInfinity);
-    }
+    if (slope_ > 0) next = low < 0 ? 0 : (dense > 0 ? low + step : kInfinity);
+    if (slope_ < 0)
+        next = dense == 0 ? kHighest * scale : (low > 0 ? std::max(0.0, low - step) : -kInfinity);
     end_ = stop_;
     if (std::isfinite(next) && slope_ != 0)
         end_ = std::clamp((next - height_) / slope_, std::nextafter(begin_, kInfinity), stop_);
-    const auto densityAt = [&](double h) {
-        return h > kHighest * scale ? 0.0 : std::exp(-std::max(0.0, h) / scale);
-    };
-    const double a = densityAt(low),
-                 b = std::isinf(end_) ? (slope_ > 0 ? 0.0 : a) : densityAt(height_ + slope_ * end_);
-    minimum_ = std::min(a, b);
-    maximum_ = std::max(a, b);
-    mean_ = 0.5 * (a + b);
-    if (low >= kHighest * scale && slope_ >= 0) minimum_ = maximum_ = mean_ = 0;
+    const double high = std::isinf(end_) && slope_ < 0 ? -kInfinity : height_ + slope_ * end_;
+    double other = dense;
+    if (slope_ != 0)
+        other = high > 0 ? (high < kHighest * scale ? std::exp(-high / scale) : 0.0) : 1.0;
+    minimum_ = std::min(dense, other);
+    maximum_ = std::max(dense, other);
+    // The mean of an exponential between its ends.
+    mean_ = maximum_ - minimum_ > 1e-3 * maximum_ && minimum_ > 0
+                ? (maximum_ - minimum_) / std::log(maximum_ / minimum_)
+                : 0.5 * (minimum_ + maximum_);
 }
 
 double MediumWalk::density(double t) const {
