@@ -14,35 +14,14 @@
 #include "programs/commands.h"
 #include "programs/interrupt.h"
 #include "programs/load_scene.h"
-#include "programs/output_file.h"
-#include "programs/render_options.h"
+#include "programs/reference_options.h"
 #include "reference/checkpoint.h"
+#include "reference/picture_cache.h"
 #include "reference/render.h"
 
 namespace tyndall {
 namespace fs = std::filesystem;
 namespace {
-
-constexpr const char* kExamples =
-    "Examples:\n"
-    "  tyndall reference smoke.scene.json -o truth.exr --size 320x180 --spp 1024\n"
-    "  tyndall reference smoke.scene.json -o truth.exr --target-error 1e-4 --time 3600\n"
-    "      whichever is reached first\n"
-    "  tyndall reference smoke.scene.json -o truth.exr --spp 4096 --resume\n"
-    "      goes on where a run that was stopped or killed left off: give the other options as before\n"
-    "  tyndall reference smoke.scene.json -o direct.exr --terms LE,LSE,LVE\n"
-    "\nThe EXR holds the picture (R G B), each transport term and the variance of the mean. While it works, the picture so\n"
-    "far is in OUT.exr and all that is needed to go on in OUT.exr.resume, both at most half a minute old.";
-
-struct ReferenceOptions {
-    std::string scene, output, size = "1280x720", terms = "all", camera, integrator = "volume",
-                               transmittance = "ratio", report;
-    int64_t spp = 0;
-    double seconds = 0, targetError = 0, checkpointSeconds = 30;
-    int maxDepth = 0, threads = 0;
-    uint64_t seed = 0;
-    bool resume = false, half = false, keep = false;
-};
 
 double now() {
     using Clock = std::chrono::steady_clock;
@@ -56,7 +35,7 @@ public:
     Outcome run();
 
 private:
-    Outcome checkOptions();
+    Outcome takeFromCache(bool& taken);
     Outcome startOrResume();
     Outcome render();
     [[nodiscard]] uint32_t nextPass() const;
@@ -65,7 +44,8 @@ private:
     Outcome writePicture();
     Outcome writeReport() const;
     [[nodiscard]] std::string identity() const;
-    [[nodiscard]] fs::path resumePath() const { return options_.output + ".resume"; }
+    Outcome copyOut() const;
+    [[nodiscard]] fs::path resumePath() const { return output_ + ".resume"; }
 
     const ReferenceOptions& options_;
     ProgressStyle style_;
@@ -75,59 +55,42 @@ private:
     std::unique_ptr<reference::ReferenceRender> render_;
     double setupSeconds_ = 0, begun_ = 0, rendering_ = 0, error_ = INFINITY;
     uint32_t samplesBefore_ = 0;
+    std::string output_, copyTo_;
 };
 
-Outcome ReferenceRun::checkOptions() {
-    if (!options_.output.ends_with(".exr"))
-        return wrongInput(fmt::format(
-            "-o {}: the reference writes layers, so its name must end in .exr", options_.output));
-    if (Result<void> folder = checkOutputFolder("-o", options_.output); !folder.ok())
-        return wrongInput(folder.error().message);
-    if (Result<void> size = parseSize(options_.size, settings_.width, settings_.height); !size.ok())
-        return wrongInput(size.error().message);
-    Result<TermSet> terms = parseTerms(options_.terms);
-    if (!terms.ok()) return wrongInput("--terms: " + terms.message());
-    settings_.path.terms = *terms;
-    if (options_.spp < 0 || options_.spp > (int64_t(1) << 31))
-        return wrongInput(
-            fmt::format("--spp {}: it takes 1 to 2147483648 samples a pixel", options_.spp));
-    const auto negative = [](const char* name, double value) {
-        return wrongInput(fmt::format("{} {}: it must be a finite number above 0", name, value));
-    };
-    if (!(options_.seconds >= 0) || std::isinf(options_.seconds))
-        return negative("--time", options_.seconds);
-    if (!(options_.targetError >= 0) || std::isinf(options_.targetError))
-        return negative("--target-error", options_.targetError);
-    if (!(options_.checkpointSeconds >= 0))
-        return negative("--checkpoint", options_.checkpointSeconds);
-    if (options_.maxDepth < 0)
-        return wrongInput(
-            fmt::format("--max-depth {}: 0 is unlimited, 1 direct light alone", options_.maxDepth));
-    if (options_.threads < 0 || options_.threads > 1024)
-        return wrongInput(
-            fmt::format("--threads {}: 0 is all cores, and no more than 1024", options_.threads));
-    settings_.path.maxScatterings = options_.maxDepth == 0 ? -1 : options_.maxDepth;
-    if (options_.integrator != "volume" && options_.integrator != "simple")
-        return wrongInput(
-            fmt::format("--integrator {}: there are volume and simple", options_.integrator));
-    settings_.integrator = options_.integrator == "simple" ? reference::Integrator::Simple
-                                                           : reference::Integrator::Volume;
-    if (options_.transmittance != "exact" && options_.transmittance != "ratio")
-        return wrongInput(
-            fmt::format("--transmittance {}: there are exact and ratio", options_.transmittance));
-    settings_.path.transmittance = options_.transmittance == "ratio"
-                                       ? reference::TransmittanceMode::Ratio
-                                       : reference::TransmittanceMode::Exact;
-    settings_.seed = options_.seed;
-    settings_.threads = options_.threads;
-    return {};
+/// With --cache: the picture goes into the folder under its own name. One that is there and good enough is taken as it is.
+Outcome ReferenceRun::takeFromCache(bool& taken) {
+    taken = false;
+    if (options_.cache.empty()) return {};
+    std::error_code error;
+    fs::create_directories(options_.cache, error);
+    const std::string name = reference::pictureName(scene_, options_.scene, camera_, settings_);
+    copyTo_ = options_.output;
+    output_ = (fs::path(options_.cache) / name).string();
+    const auto kept = reference::findPicture(options_.cache, name);
+    if (!kept) return {};
+    const bool enough = (options_.spp > 0 && kept->samples >= uint64_t(options_.spp)) ||
+                        (options_.targetError > 0 && kept->estimatedRelmse <= options_.targetError);
+    if (!enough) return {};
+    taken = true;
+    log::info(fmt::format("{} is there already: {} samples a pixel, estimated relmse {:.2g}",
+                          output_, kept->samples, kept->estimatedRelmse));
+    return copyOut();
+}
+
+Outcome ReferenceRun::copyOut() const {
+    if (copyTo_.empty()) return {};
+    const Result<std::string> content = readFile(output_);
+    if (!content.ok()) return failed(content.message());
+    return outcomeOf(writeFileAtomically(copyTo_, *content), ExitStatus::Failed);
 }
 
 /// Everything that a sample depends on.
 std::string ReferenceRun::identity() const {
-    return fmt::format("scene {:016x} seed {} depth {} integrator {} transmittance {} version {}",
-                       reference::sceneHash(scene_, camera_), settings_.seed, options_.maxDepth,
-                       options_.integrator, options_.transmittance, TYNDALL_VERSION);
+    return fmt::format(
+        "scene {:016x} seed {} depth {} integrator {} transmittance {} version {}-{}",
+        reference::sceneHash(scene_, camera_), settings_.seed, options_.maxDepth,
+        options_.integrator, options_.transmittance, TYNDALL_VERSION, reference::kReferenceVersion);
 }
 
 Outcome ReferenceRun::startOrResume() {
@@ -140,9 +103,9 @@ Outcome ReferenceRun::startOrResume() {
     std::error_code error;
     if (!options_.resume) {
         // Better now than after an hour: can files be written there?
-        const fs::path probe = options_.output + ".probe";
+        const fs::path probe = output_ + ".probe";
         if (Result<void> written = writeFileAtomically(probe, ""); !written.ok())
-            return failed(fmt::format("-o {}: {}", options_.output, written.error().message));
+            return failed(fmt::format("-o {}: {}", output_, written.error().message));
         fs::remove(probe, error);
         return {};
     }
@@ -248,9 +211,9 @@ Outcome ReferenceRun::writePicture() {
                                     {"tyndall.ev100", fmt::format("{}", scene_.ev100)},
                                     {"tyndall.identity", identity()},
                                     {"tyndall.estimatedRelmse", fmt::format("{:.6g}", error_)}};
-    return outcomeOf(writeExr(options_.output, layers, metadata,
-                              options_.half ? ExrDepth::Half : ExrDepth::Float),
-                     ExitStatus::Failed);
+    return outcomeOf(
+        writeExr(output_, layers, metadata, options_.half ? ExrDepth::Half : ExrDepth::Float),
+        ExitStatus::Failed);
 }
 
 Outcome ReferenceRun::writeReport() const {
@@ -280,12 +243,16 @@ Outcome ReferenceRun::writeReport() const {
 }
 
 Outcome ReferenceRun::run() {
-    if (Outcome checked = checkOptions(); !checked.ok()) return checked;
+    if (Result<void> checked = checkReferenceOptions(options_, settings_); !checked.ok())
+        return wrongInput(checked.error().message);
     if (Outcome loaded = loadSceneForCommand(options_.scene, style_, scene_); !loaded.ok())
         return loaded;
     Result<int> camera = findCamera(scene_, options_.camera);
     if (!camera.ok()) return wrongInput(camera.message());
     camera_ = *camera;
+    output_ = options_.output;
+    bool taken = false;
+    if (Outcome looked = takeFromCache(taken); !looked.ok() || taken) return looked;
     if (Outcome started = startOrResume(); !started.ok()) return started;
     if (Outcome rendered = render(); !rendered.ok()) return rendered;
     if (options_.keep)
@@ -294,9 +261,8 @@ Outcome ReferenceRun::run() {
     std::error_code error;
     if (!options_.keep) fs::remove(resumePath(), error);
     const reference::PathCounts& counts = render_->counts();
-    log::info(fmt::format("wrote {}: {} samples a pixel in {}, estimated relmse {:.2g}",
-                          options_.output, render_->film().samples(), durationText(rendering_),
-                          error_));
+    log::info(fmt::format("wrote {}: {} samples a pixel in {}, estimated relmse {:.2g}", output_,
+                          render_->film().samples(), durationText(rendering_), error_));
     if (counts.nonFinite > 0)
         log::warning(
             fmt::format("{} contributions were not finite and were left out", counts.nonFinite));
@@ -306,6 +272,7 @@ Outcome ReferenceRun::run() {
         log::warning(
             fmt::format("{} paths were cut off after {} scatterings: their light is missing",
                         counts.cutOff, reference::PathSettings::kLongest));
+    if (Outcome copied = copyOut(); !copied.ok()) return copied;
     return writeReport();
 }
 
@@ -315,52 +282,7 @@ void addReferenceCommand(CLI::App& program, Run& run) {
     auto options = std::make_shared<ReferenceOptions>();
     CLI::App* command = program.add_subcommand(
         "reference", "Trace a scene's paths: the picture to measure others by");
-    command->add_option("SCENE", options->scene, "A scene file, or a .gltf, .glb, .vdb or .nvdb")
-        ->required();
-    command->add_option("-o,--output", options->output, "The EXR to write")
-        ->type_name("OUT.exr")
-        ->required();
-    command->add_option("--size", options->size, "Width and height in pixels (1280x720)")
-        ->type_name("WxH");
-    command->add_option("--spp", options->spp, "Samples a pixel (64, where no other goal is given)")
-        ->type_name("N");
-    command->add_option("--time", options->seconds, "Render for so long")->type_name("SECONDS");
-    command
-        ->add_option("--target-error", options->targetError,
-                     "Render until the estimated relmse is no more")
-        ->type_name("RELMSE");
-    command
-        ->add_option("--terms", options->terms,
-                     "Transport terms, comma-separated: LE,LSE,LVE ... (all)")
-        ->type_name("LIST");
-    command
-        ->add_option("--max-depth", options->maxDepth,
-                     "Most scatterings of a path; 0: unlimited (0)")
-        ->type_name("N");
-    command->add_option("--camera", options->camera, "The camera, by node name (the scene's own)")
-        ->type_name("NAME");
-    command->add_option("--seed", options->seed, "Seed of everything random (0)")->type_name("N");
-    command->add_option("--threads", options->threads, "Threads; 0: one a core (0)")
-        ->type_name("N");
-    command->add_flag("--resume", options->resume,
-                      "Go on where the last run of this picture stopped");
-    command->add_flag("--keep-checkpoint", options->keep,
-                      "Leave OUT.exr.resume when done, for more samples later");
-    command->add_option("--checkpoint", options->checkpointSeconds, "Save at least this often (30)")
-        ->type_name("SECONDS");
-    command
-        ->add_option(
-            "--integrator", options->integrator,
-            "volume, or simple: slow, short, without aiming at lights; lights without extent stay dark")
-        ->type_name("NAME");
-    command
-        ->add_option("--transmittance", options->transmittance,
-                     "Of grids: ratio, unbiased estimates, or exact, slower (ratio)")
-        ->type_name("NAME");
-    command->add_flag("--half", options->half, "Write 16-bit floats");
-    command->add_option("--report", options->report, "Write what it took as JSON")
-        ->type_name("FILE");
-    command->footer(kExamples);
+    addReferenceOptions(*command, *options);
     command->callback([options, &run] {
         run = [options](const GlobalOptions& global) {
             if (options->spp == 0 && options->seconds == 0 && options->targetError == 0)

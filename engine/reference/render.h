@@ -50,6 +50,9 @@ private:
     PathCounts counts_;
 };
 
+/// Counts up whenever the pictures that this path tracer makes of the same scene change: pictures kept from before are then stale.
+inline constexpr int kReferenceVersion = 1;
+
 /// A number for all in the scene that its picture depends on: geometry, materials, textures, lights, media, camera.
 uint64_t sceneHash(const Scene& scene, int cameraNode);
 
