@@ -31,13 +31,17 @@ uint32_t shaderType(LightType type) {
     return gpu::kLightPoint;
 }
 
-/// The light of this frame as a low-discrepancy point of the unit square: every light has its own sequence.
-dvec2 framePoint(const gpu::ViewData& view, uint32_t light) {
-    return lowDiscrepancyPoint(view.frameIndex, fg::mixHash(uint64_t(view.seed) + 31, light));
+/// The light of this frame as a low-discrepancy point of the unit square: every light has its own sequence. A ball takes each
+/// point for two frames, see setSamplePoint.
+dvec2 framePoint(const gpu::ViewData& view, const gpu::LightData& light, uint32_t node) {
+    const bool ball = light.type != gpu::kLightRect && light.type != gpu::kLightDirectional;
+    return lowDiscrepancyPoint(ball ? view.frameIndex / 2 : view.frameIndex,
+                               fg::mixHash(uint64_t(view.seed) + 31, node));
 }
 
-/// A point on the light that stands for all of it in this frame; see light.glsl for the weights.
-void setSamplePoint(gpu::LightData& light, const dvec2& u) {
+/// A point on the light that stands for all of it in this frame; see light.glsl for the weights. A ball's points come in opposite pairs:
+/// one of the two is turned towards any receiver, so that the light on it hardly varies from pair to pair.
+void setSamplePoint(gpu::LightData& light, const dvec2& u, bool opposite) {
     const double radius = double(light.direction.w);
     if (light.type == gpu::kLightRect) {
         const dvec3 point = dvec3(light.position) + (2.0 * u.x - 1.0) * dvec3(light.axisX) +
@@ -57,7 +61,9 @@ void setSamplePoint(gpu::LightData& light, const dvec2& u) {
         const dvec3 direction =
             glm::normalize(x * (s * std::cos(azimuth)) + y * (s * std::sin(azimuth)) + axis * z);
         light.samplePoint =
-            vec4(vec3(sun ? direction : dvec3(light.position) + radius * direction), 1.0f);
+            vec4(vec3(sun ? direction
+                          : dvec3(light.position) + (opposite ? -radius : radius) * direction),
+                 1.0f);
         // A disc of constant radiance gives E on a surface that faces its centre: its mean is 2E/(1 + cos) by solid angle.
         if (sun) light.intensity *= vec4(vec3(float(2.0 / (1.0 + lowest))), 1.0f);
     }
@@ -265,7 +271,9 @@ void LightSystem::update(const LightFrame& frame) {
     for (const Collected& c : all) {
         gpu::LightData data = c.data;
         // Numbered by node, so that a light keeps its sequence when others come and go.
-        if (converge) setSamplePoint(data, framePoint(frame.view->data, uint32_t(c.node)));
+        if (converge)
+            setSamplePoint(data, framePoint(frame.view->data, data, uint32_t(c.node)),
+                           frame.view->data.frameIndex % 2 == 1);
         lights_.push_back(data);
         nodes_.push_back(c.node);
         if (c.reach <= 0)

@@ -138,6 +138,11 @@ std::vector<PlacedMedium> MediaSystem::choose(const MediaFrameRequest& request,
     return chosen;
 }
 
+/// Cell by cell a ray through a grid has hundreds of segments, and each light asked for at each of them is a march of its own: frames
+/// that are averaged ask at every eighth. It is not speed alone: llvmpipe ends all loops of a shader after 65,535 rounds in
+/// all (LP_MAX_TGSI_LOOP_ITERATIONS), and the rest of the ray would be missing.
+constexpr uint32_t kCellsAGather = 8;
+
 gpu::MediaHeader MediaSystem::makeHeader(const MediaFrameRequest& request,
                                          std::vector<PlacedMedium>& chosen) {
     const bool converge = (request.view->data.flags & gpu::kViewConverge) != 0;
@@ -170,6 +175,7 @@ gpu::MediaHeader MediaSystem::makeHeader(const MediaFrameRequest& request,
         uint32_t(std::count_if(request.lights.begin(), request.lights.end(), fromEnvironment));
     const auto atOnce = uint32_t(settings_.environmentLights);
     header.environmentStride = (header.environmentLights + atOnce - 1) / atOnce;
+    header.gatherStride = converge && exact && header.gridCount > 0 ? kCellsAGather : 1;
     return header;
 }
 
@@ -257,9 +263,8 @@ MediaFrame MediaSystem::beginFrame(fg::FrameGraph& graph, const MediaFrameReques
         r.kinds |= gpu::kMediaExactGrids;
     if (header.mediumCount == 1) r.kinds |= gpu::kMediaSingle;
     const bool marched =
-        std::any_of(layout_.views.begin(), layout_.views.end(), [](const gpu::OpticalDepthView& v) {
-            return v.kind == gpu::kDepthViewMarch;
-        });
+        std::any_of(layout_.views.begin(), layout_.views.end(),
+                    [](const gpu::OpticalDepthView& v) { return v.kind == gpu::kDepthViewMarch; });
     if (header.gridCount > 0 && (header.flags & gpu::kMediaLightDepthVolume) != 0 && !marched)
         r.kinds |= gpu::kMediaLightVolumes;
     r.phaseGroups = header.phaseGroupCount == 1 ? 1 : gpu::kMaxPhaseGroups;
