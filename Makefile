@@ -9,7 +9,7 @@ CMAKE_FLAGS ?=
 TEST_FLAGS ?=
 
 .DEFAULT_GOAL := help
-.PHONY: help setup build demo test test-slow package clean
+.PHONY: help setup build demo test test-slow validation package clean
 
 help: ## say what there is to do
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "make %-10s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -33,6 +33,11 @@ test: build ## build and run all tests but the slow ones
 
 test-slow: build ## run the slow tests: every file of the shared content, long sweeps
 	@ctest --test-dir $(BUILD) --label-regex slow --parallel 2 --output-on-failure $(TEST_FLAGS)
+
+# The table of known results lies beside the repository, with the shared content. PRECISE=1: for the night, and the next one.
+TABLE ?= ../shared/reference/rt-tables.csv
+validation: build ## measure the reference against the table of known results, into docs/validation.md
+	@$(BUILD)/tests/reference_validation --table $(TABLE) --report docs/validation.md $(if $(PRECISE),--precise)
 
 package: build ## make dist/tyndall-VERSION-linux-x86_64.tar.gz, which runs from any folder
 	@cmake/package.sh $(BUILD) dist

@@ -1,0 +1,159 @@
+// However light is looked for, it is the same light; and it goes both ways alike.
+
+#include <cmath>
+
+#include "laws_fixture.h"
+
+namespace tyndall::validation {
+namespace {
+
+enum class Lamp { Ball = 0, Rect = 1, Sun = 2, Sky = 3, Triangles = 4, Spot = 5 };
+
+void addLamp(SceneMaker& maker, Lamp lamp) {
+    Light light;
+    switch (lamp) {
+    case Lamp::Ball: maker.addPointLight({0.8, 1.2, 0.3}, 12, 0.4); return;
+    case Lamp::Rect:
+        light.type = LightType::Rect;
+        light.size = {1.2f, 0.8f};
+        light.radiance = {9, 7, 5};
+        maker.addLight(light, lookAlong({-0.4, -1, 0.1}, {0.6, 1.6, 0}));
+        return;
+    case Lamp::Sun:
+        light.type = LightType::Directional;
+        light.intensity = 4;
+        light.radius = 0.25f;
+        maker.addLight(light, lookAlong({-0.5, -1, -0.3}));
+        return;
+    case Lamp::Spot:
+        light.type = LightType::Spot;
+        light.intensity = 60;
+        light.radius = 0.3f;
+        light.range = 6;
+        light.innerConeAngle = 0.3f;
+        light.outerConeAngle = 0.8f;
+        maker.addLight(light, lookAlong({-0.4, -1, 0}, {0.6, 1.8, 0}));
+        return;
+    case Lamp::Sky: {
+        auto image = std::make_shared<Image>(8, 4, 3);
+        for (size_t i = 0; i < image->pixels.size(); ++i)
+            image->pixels[i] = i / 3 == 10 ? 6.0f : 0.2f + 0.05f * float(i % 7);
+        maker.scene().environment.image = image;
+        maker.scene().environment.rotation = 0.7f;
+        return;
+    }
+    case Lamp::Triangles: {
+        Material glow = matt(vec3(0.2f));
+        glow.emissive = {8, 6, 4};
+        maker.addPrimitive(PrimitiveShape::Box, dvec3(0.7), glow,
+                           lookAlong({0.3, 0.4, 1}, {0.6, 1.2, 0.2}));
+        return;
+    }
+    }
+}
+
+std::shared_ptr<const Stage> room(Lamp lamp) {
+    SceneMaker maker;
+    Medium smoke = matter(MediumKind::Grid, 0.9, 0.3);
+    smoke.density = lumpyGrid(2.6, 4, 31);
+    maker.addMedium(smoke);
+    Material shiny = matt({0.8f, 0.5f, 0.3f});
+    shiny.specular = 1;
+    shiny.roughness = 0.5f;
+    maker.addPrimitive(PrimitiveShape::Plane, {5, 1, 5}, shiny,
+                       lookAlong({0, 0, -1}, {0, -1.1, 0}));
+    addLamp(maker, lamp);
+    return Stage::make(maker.take());
+}
+
+class ReferenceAiming : public ::testing::TestWithParam<std::pair<Lamp, const char*>> {};
+
+// T12.
+TEST_P(ReferenceAiming, NotAtAllFromCollisionsAndFromSegmentsTooFindsTheSameLight) {
+    const auto [lamp, name] = GetParam();
+    const auto stage = room(lamp);
+    reference::PathSettings none, collisions, ratio;
+    none.aimAtLights = false;
+    collisions.aimFromSegments = false;
+    ratio.transmittance = reference::TransmittanceMode::Ratio;
+    const dvec3 eye(0.2, 0.5, 4), to(0, -0.4, 0);
+    const Probe full = gaze(stage, eye, to, 0.8);
+    const uint64_t seed = 700 + 10 * uint64_t(lamp);
+    expectSameLight(full, gaze(stage, eye, to, 0.8, 1, none), seed,
+                    std::string(name) + ": all and none", 5e5);
+    expectSameLight(full, gaze(stage, eye, to, 0.8, 1, collisions), seed + 1,
+                    std::string(name) + ": all and collisions");
+    expectSameLight(full, gaze(stage, eye, to, 0.8, 1, ratio), seed + 2,
+                    std::string(name) + ": exact and ratio tracking");
+}
+
+INSTANTIATE_TEST_SUITE_P(Lamps, ReferenceAiming,
+                         ::testing::Values(std::pair(Lamp::Ball, "ball"),
+                                           std::pair(Lamp::Rect, "rect"),
+                                           std::pair(Lamp::Sun, "sun"), std::pair(Lamp::Sky, "sky"),
+                                           std::pair(Lamp::Triangles, "triangles"),
+                                           std::pair(Lamp::Spot, "spot")),
+                         [](const auto& about) { return std::string(about.param.second); });
+
+/// Fluence at `at` of a lamp of 1 W/sr at `lamp`, but for what comes straight from it.
+Probe fluence(const Medium& smoke, const dvec3& lamp, const dvec3& at, bool surfaces) {
+    SceneMaker maker;
+    maker.addMedium(smoke);
+    if (surfaces) {
+        Material shiny = matt({0.7f, 0.7f, 0.7f});
+        shiny.specular = 1;
+        shiny.roughness = 0.6f;
+        maker.addPrimitive(PrimitiveShape::Plane, {7, 1, 7}, shiny,
+                           lookAlong({0, 0.2, -1}, {0, -0.8, 0}));
+        maker.addPrimitive(PrimitiveShape::Box, {0.2, 0.5, 0.6}, matt(vec3(0.5f)),
+                           lookAlong({0.3, 0, -1}, {0, -0.3, 0.1}));
+    }
+    maker.addPointLight(lamp, 1);
+    Probe probe;
+    probe.stage = Stage::make(maker.take());
+    probe.sample = [at](Tracers& tracers, Sampler& sampler) {
+        const dvec2 u = sampler.next2();
+        TermLight light;
+        tracers[0].trace({{at, reference::directionAround(1 - 2 * u.x, u.y)}, 0}, sampler, light);
+        return light.sum().y;
+    };
+    return probe;
+}
+
+// T14.
+TEST(ReferenceLaws, ALampAndASensorCanChangePlaces) {
+    const dvec3 a(-0.7, 0.3, 0.4), b(0.7, -0.3, -0.2);
+    Medium smoke = matter(MediumKind::Grid, 0.95, 0.7);
+    smoke.density = lumpyGrid(2.4, 3, 41);
+    expectSameLight(fluence(smoke, a, b, false), fluence(smoke, b, a, false), 800, "smoke", 1e6);
+    expectSameLight(fluence(smoke, a, b, true), fluence(smoke, b, a, true), 801,
+                    "smoke and surfaces", 1e6);
+}
+
+// Cox's theorem for single paths: in a white room under a white sky nothing can be seen (T5).
+TEST(ReferenceLaws, AWhiteWorldUnderAWhiteSkyIsWhite) {
+    SceneMaker maker;
+    Medium smoke = matter(MediumKind::Grid, 1, 0.9), haze = matter(MediumKind::Sphere, 1, -0.7);
+    smoke.density = lumpyGrid(2, 20, 3);
+    smoke.scattering = {0.4f, 1, 2.5f}; // albedo 1 in every colour
+    haze.phase = PhaseFunction::CornetteShanks;
+    haze.size = {3, 2, 1};
+    maker.addMedium(smoke);
+    maker.addMedium(haze, dvec3(0.4, 0, 0));
+    maker.addPrimitive(PrimitiveShape::Box, dvec3(0.6), matt(vec3(1)),
+                       lookAlong({0.3, 0.5, 0.8}, {0.2, -0.1, 0.3}));
+    maker.addWhiteEnvironment();
+    const auto stage = Stage::make(maker.take());
+    for (int c = 0; c < 3; ++c) {
+        Effort effort;
+        effort.segments = 3e5;
+        const Estimate seen =
+            measure(gaze(stage, {0.3, 0.2, 4}, dvec3(0), 0.8, c), effort, 900 + uint64_t(c));
+        std::printf("channel %d: %.6f ± %.6f\n", c, seen.value, seen.error);
+        EXPECT_LE(std::abs(seen.value - 1), kLargestT * seen.error);
+        EXPECT_LT(seen.error, 0.02);
+    }
+}
+
+} // namespace
+} // namespace tyndall::validation
