@@ -79,8 +79,14 @@ void MediumSource::makeBrickBounds() {
 
 Interval MediumSource::clip(const Ray& ray, double length) const {
     switch (kind_) {
-    case MediumKind::Everywhere:
-    case MediumKind::Height: return {0, length};
+    case MediumKind::Everywhere: return {0, length};
+    case MediumKind::Height: {
+        const double slope = glm::dot(up_, ray.direction),
+                     room = kHighestFog * scaleHeight_ - (glm::dot(up_, ray.origin) - ground_);
+        if (slope > 0) return {0, std::min(length, room / slope)};
+        if (slope < 0) return {std::max(0.0, room / slope), length};
+        return {0, room > 0 ? length : 0};
+    }
     case MediumKind::Particles: return {};
     default: break;
     }

@@ -18,6 +18,9 @@ struct Interval {
     [[nodiscard]] bool empty() const { return !(end > begin); }
 };
 
+/// Above this many scale heights no fog is left, e⁻⁶⁰: free flight need not go on for ever.
+inline constexpr double kHighestFog = 60;
+
 /// A grid's bricks with what bounds them.
 struct BrickBounds {
     float minimum = 0, maximum = 0, mean = 0;

@@ -12,8 +12,7 @@ namespace {
 const double kHeightFall = std::sqrt(0.5);
 /// … but not more finely than into this optical depth: where collisions are rare, so are those that are not real.
 constexpr double kThinPiece = 0.1;
-/// Above this many scale heights no fog is left: e⁻⁶⁰.
-constexpr double kHighest = 60;
+constexpr double kHighest = kHighestFog; // in scale heights
 
 } // namespace
 

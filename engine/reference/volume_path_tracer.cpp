@@ -146,11 +146,19 @@ void VolumePathTracer::aimFromSurface(const SurfacePoint& point, const Bsdf& bsd
     const size_t light = Lights::pick(fromPoint_, u);
     const AimedSample aimed = scene_.lights->aim(light, point.position, u, sampler_->next2());
     if (!aimed.valid()) return;
+    // The shadow ray starts off the surface. It still ends where it was aimed, or a glowing triangle would shadow itself.
+    Ray shadow = rayFrom(point, aimed.direction);
+    AimedSample way = aimed;
+    if (std::isfinite(aimed.distance)) {
+        const dvec3 rest = point.position + aimed.distance * aimed.direction - shadow.origin;
+        way.distance = glm::length(rest);
+        if (way.distance > 0) shadow.direction = rest / way.distance;
+    }
     const dvec3 reflected = bsdf.evaluate(aimed.direction);
     if (!(maximumOf(reflected) > 0)) return;
     const double density = aimed.density * fromPoint_.chance(light);
     const double met = aimed.delta ? 0 : bsdf.density(aimed.direction);
-    const dvec3 light3 = arriving(aimed, rayFrom(point, aimed.direction));
+    const dvec3 light3 = arriving(way, shadow);
     see(history_.term(), weights_.carried() * reflected * light3 / (density + met));
 }
 

@@ -95,6 +95,22 @@ INSTANTIATE_TEST_SUITE_P(Lamps, ReferenceAiming,
                                            std::pair(Lamp::Spot, "spot")),
                          [](const auto& about) { return std::string(about.param.second); });
 
+// The shadow ray starts off the floor by a margin that grows with the floor: it must not end behind the box's face.
+TEST(ReferenceLaws, AGlowingBoxLightsAWideFloorByAimingAsMuchAsByChance) {
+    for (const double width : {5.0, 300.0}) {
+        SceneMaker maker;
+        maker.addPrimitive(PrimitiveShape::Plane, {width, 1, width}, matt(vec3(0.5f)),
+                           lookAlong({0, 0, -1}, {0, -1.1, 0}));
+        addLamp(maker, Lamp::Triangles);
+        const auto stage = Stage::make(maker.take());
+        reference::PathSettings none;
+        none.aimAtLights = false;
+        expectSameLight(gaze(stage, {0.2, 0.5, 4}, {0, -1.6, 0}, 0.3),
+                        gaze(stage, {0.2, 0.5, 4}, {0, -1.6, 0}, 0.3, 1, none),
+                        uint64_t(850 + width), "a floor of " + std::to_string(width) + " m");
+    }
+}
+
 /// Fluence at `at` of a lamp of 1 W/sr at `lamp`, but for what comes straight from it.
 Probe fluence(const Medium& smoke, const dvec3& lamp, const dvec3& at, bool surfaces) {
     SceneMaker maker;
