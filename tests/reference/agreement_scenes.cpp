@@ -28,9 +28,9 @@ void addFloor(SceneMaker& maker, const Material& material) {
 void addRect(SceneMaker& maker, const vec3& radiance) {
     Light light;
     light.type = LightType::Rect;
-    light.size = {2.4f, 1.8f};
-    light.radiance = radiance;
-    maker.addLight(light, lookAlong({-0.5, -1, -0.1}, {1, 2, 0.2}));
+    light.size = {6, 5};
+    light.radiance = 0.4f * radiance;
+    maker.addLight(light, lookAlong({-0.3, -1, -0.1}, {0.6, 2, 0.2}));
 }
 
 void addSky(SceneMaker& maker) {
@@ -75,7 +75,7 @@ Material leaf(SceneMaker& maker) {
 
 void colouredSmoke(SceneMaker& maker) {
     maker.addMedium(gridOf({0.6f, 1.5f, 3}, {0.5f, 0.2f, 0.05f}, 0.95, 1));
-    maker.addPointLight({-0.8, 1, -1.2}, 30, 0.6);
+    maker.addPointLight({-1.2, 1.6, -1.6}, 30, 1.4);
     addFloor(maker, matt({0.6f, 0.7f, 0.4f}));
 }
 
@@ -198,8 +198,8 @@ AgreementScene agreementScene(int index) {
         dvec3 eye = kEye;
     };
     static const Entry entries[kAgreementScenes] = {
-        {"coloured smoke, g 0.95, a ball of light", colouredSmoke, 1024, 128},
-        {"an ellipsoid, g -0.95, a bright rectangle", backwardBall, 768, 128},
+        {"coloured smoke, g 0.95, a ball of light", colouredSmoke, 2048, 256},
+        {"an ellipsoid, g -0.95, a bright rectangle", backwardBall, 3072, 128},
         {"fire", fire, 384, 128},
         {"an uneven sky", underASky, 384, 128},
         {"an eye inside height fog", insideFog, 768, 128, {0.4, 0.1, 2.2}},

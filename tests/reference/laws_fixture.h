@@ -35,7 +35,7 @@ inline Probe gaze(std::shared_ptr<const Stage> stage, const dvec3& from, const d
 /// Relative error 10⁻³ or `segments`, whichever is cheaper; the two share no random numbers. `slack`: relative, for what the two
 /// may honestly differ by.
 inline void expectSameLight(const Probe& a, const Probe& b, uint64_t seed, const std::string& what,
-                            double segments = 2.5e5, double slack = 0) {
+                            double segments = 4e5, double slack = 0) {
     Effort effort;
     effort.segments = segments;
     const Estimate first = measure(a, effort, reference::mixBits(2 * seed)),
