@@ -6,6 +6,7 @@
 //
 // IN_SCATTER: 0: no light is gathered; 1: of few lights; 2: of many, from lists.
 #define MARCH_PHASE_GROUPS PHASE_GROUPS
+#define MARCH_GATHERS (IN_SCATTER != 0)
 #if IN_SCATTER == 2
 #define MARCH_TILE_LIGHTS
 #endif

@@ -8,14 +8,20 @@
 // are unbiased.
 //
 // Before including this, a shader may define MARCH_PHASE_GROUPS (1 to 8: at least MediaHeader.phaseGroupCount), and
-// MARCH_OCTAVES to replace single scattering by the octaves of `marchOctaves`.
+// MARCH_OCTAVES to replace single scattering by the octaves of `marchOctaves`. MARCH_GATHERS 0: no light is gathered, and the
+// lights' buffers are not even declared, for drivers count those as used.
 #ifndef TYNDALL_MEDIA_MARCH
 #define TYNDALL_MEDIA_MARCH
+#ifndef MARCH_GATHERS
+#define MARCH_GATHERS 1
+#endif
 #include "common/phase_function.glsl"
 #include "common/random.glsl"
 #include "common/view.glsl"
+#if MARCH_GATHERS
 #include "lighting/light.glsl"
 #include "lighting/shadow.glsl"
+#endif
 #include "media/march_segment.glsl"
 #include "shared/march.h"
 
@@ -41,6 +47,7 @@ struct MarchResult {
 const float kPointsPerRadian = 2.5; // at which light is gathered, as the light sees them
 const int kMostSegments = 16384; // ends a march whose coordinates have lost their meaning
 
+#if MARCH_GATHERS
 // ---- where in a segment light is gathered ----------------------------------------------------------------------
 
 /// A point of a segment, as the fraction of its length, and the segment's scattered light per scattering coefficient
@@ -210,6 +217,7 @@ vec3 segmentInScatter(Ray ray, Segment s, uint lightCount, vec3 noise, uint turn
     return sum;
 }
 
+#endif
 // ---- the march --------------------------------------------------------------------------------------------------
 
 /// From ray.origin over `distance` metres (1e30: endless). `flags`: kMarchInScatter, kMarchEmission. `pixel` seeds the noise.
@@ -231,6 +239,7 @@ MarchResult marchMedia(Ray ray, float distance, uint flags, uint lightCount, uve
         Segment s = marchSegment(ray, t, end);
         t = s.start + s.size;
         vec3 transmittance = exp(-result.opticalDepth);
+#if MARCH_GATHERS
         if ((flags & kMarchInScatter) != 0u && s.scatters) {
             if (untilGather == 0u) {
                 result.inScatter += transmittance * float(gatherStride) * segmentInScatter(ray, s, lightCount, noise, turn);
@@ -239,6 +248,7 @@ MarchResult marchMedia(Ray ray, float distance, uint flags, uint lightCount, uve
             }
             --untilGather;
         }
+#endif
         if ((flags & kMarchEmission) != 0u)
             result.emission += transmittance * s.emission * oneMinusExpOverX(s.depth);
         result.opticalDepth = min(result.opticalDepth + s.depth, vec3(kOpaque));
