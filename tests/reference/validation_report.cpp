@@ -72,6 +72,8 @@ std::string machine() {
 int run(const Arguments& arguments) {
     const std::vector<Row> table = readTable(arguments.table);
     const auto begin = std::chrono::steady_clock::now();
+    ReportFacts facts;
+    facts.version = firstLineOf("git log -1 --format=%h -- engine/reference 2>/dev/null");
     std::vector<Outcome> outcomes;
     bool failed = false;
     for (const Row& row : table) {
@@ -81,11 +83,9 @@ int run(const Arguments& arguments) {
         std::fflush(stdout);
         failed = failed || outcomes.back().verdict == Verdict::Fail;
     }
-    ReportFacts facts;
     facts.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     facts.command =
         arguments.options.relativeTarget < 5e-4 ? "make validation PRECISE=1" : "make validation";
-    facts.version = firstLineOf("git log -1 --format=%h -- engine/reference 2>/dev/null");
     facts.machine = machine();
     char date[32];
     const std::time_t now = std::time(nullptr);

@@ -1,5 +1,6 @@
 // Bodies without walls: spheres in a furnace, point sources in endless matter, airlight, furnaces.
 
+#include <algorithm>
 #include <cmath>
 
 #include "reference/simple_path_tracer.h"
@@ -38,6 +39,7 @@ std::shared_ptr<const Stage> sphereInFurnace(double radius, double albedo) {
 Recipe sphereRecipe(const Row& row, double radius) {
     Probe probe;
     probe.stage = sphereInFurnace(radius, Row::number(row.albedo));
+    probe.effort = row.expected > 0 ? std::clamp(0.02 / row.expected, 1.0, 10.0) : 1; // rare light
     const dvec3 down(0, 0, -1);
     const auto chord = [=](Tracers& tracers, Sampler& sampler, double impact) {
         return seen(tracers, {impact * radius, 0, radius + 1}, down, sampler);
@@ -91,6 +93,7 @@ Recipe fluenceRecipe(double albedo, double r) {
     Probe probe;
     probe.stage = Stage::make(maker.take());
     if (cut) probe.settings[0].maxScatterings = kMost;
+    if (cut) probe.effort = 3; // thirty scatterings each
     // The radiance grows as 1/sin towards the source: angles are drawn evenly.
     probe.sample = [r](Tracers& tracers, Sampler& sampler) {
         const dvec2 u = sampler.next2();

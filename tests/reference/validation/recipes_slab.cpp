@@ -16,8 +16,9 @@ using reference::VolumePathTracer;
 using Tracers = std::vector<VolumePathTracer>;
 
 constexpr double kFarWall = 1; // metres between a slab and the wall that keeps the other side dark
-constexpr double kScarce = 1e-6, kRare = 0.05; // fluxes: not to be found, found with more effort
-constexpr double kSkim = 1e-9;                 // metres under the face: where rays of cosine 0 run
+constexpr double kScarce = 1e-6, kRare = 0.1,
+                 kRareOrder = 0.004; // fluxes: not to be found, found with more effort
+constexpr double kSkim = 1e-9;       // metres under the face: where rays of cosine 0 run
 
 dvec3 downwards(double mu, double azimuth = 0) {
     const double s = std::sqrt(std::max(0.0, 1 - mu * mu));
@@ -178,9 +179,11 @@ std::optional<Recipe> slabRecipe(const Row& row) {
     const double anisotropy = Row::number(row.anisotropy), tau = Row::number(row.tau);
     if (row.name == "slab-orders") {
         const double order = *Row::numberAfter(row.quantity, "_");
+        Probe probe = orderProbe(anisotropy, tau, int(order), sideOf(row));
+        probe.effort = std::clamp(kRareOrder / row.expected, 1.0, 8.0);
         return Recipe{"rays as for fluxes, albedo 1; LVE, LVVE, or the difference that one more "
                       "permitted scattering makes to the same path",
-                      orderProbe(anisotropy, tau, int(order), sideOf(row))};
+                      probe};
     }
     const double albedo = Row::number(row.albedo);
     if (auto recipe = radianceRecipe(row, albedo, anisotropy, tau)) return recipe;
