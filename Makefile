@@ -9,10 +9,10 @@ CMAKE_FLAGS ?=
 TEST_FLAGS ?=
 
 .DEFAULT_GOAL := help
-.PHONY: help setup build demo test test-slow validation package clean
+.PHONY: help setup build demo test test-slow validation references package clean
 
 help: ## say what there is to do
-	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "make %-10s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
+	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "make %-11s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
 
 setup: ## install the Debian packages that are missing (root or sudo)
 	@cmake/install-packages.sh
@@ -38,6 +38,9 @@ test-slow: build ## run the slow tests: every file of the shared content, long s
 TABLE ?= ../shared/reference/rt-tables.csv
 validation: build ## measure the reference against the table of known results, into docs/validation.md
 	@$(BUILD)/tests/reference_validation --table $(TABLE) --report docs/validation.md $(if $(PRECISE),--precise)
+
+references: build ## make the reference pictures of the tests that are missing or stale (tests/images/references)
+	@tests/images/make_references.py $(BUILD)/bin/tyndall
 
 package: build ## make dist/tyndall-VERSION-linux-x86_64.tar.gz, which runs from any folder
 	@cmake/package.sh $(BUILD) dist

@@ -78,7 +78,10 @@ Outcome ReferenceRun::takeFromCache(bool& taken) {
     return copyOut();
 }
 
+/// What becomes of a picture in the cache: its name goes to standard output, for scripts, and it itself to -o.
 Outcome ReferenceRun::copyOut() const {
+    if (options_.cache.empty()) return {};
+    std::printf("%s\n", output_.c_str());
     if (copyTo_.empty()) return {};
     const Result<std::string> content = readFile(output_);
     if (!content.ok()) return failed(content.message());
