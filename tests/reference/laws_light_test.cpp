@@ -127,6 +127,9 @@ Probe fluence(const Medium& smoke, const dvec3& lamp, const dvec3& at, bool surf
     maker.addPointLight(lamp, 1);
     Probe probe;
     probe.stage = Stage::make(maker.take());
+    // Among surfaces two scatterings at most: of longer paths one in a hundred thousand passes the lamp so closely that it outweighs
+    // all others.
+    if (surfaces) probe.settings[0].maxScatterings = 2;
     // The radiance grows as 1/sin towards the lamp: angles are drawn evenly.
     const dvec3 towards = glm::normalize(lamp - at);
     probe.sample = [at, towards](Tracers& tracers, Sampler& sampler) {
@@ -144,10 +147,10 @@ Probe fluence(const Medium& smoke, const dvec3& lamp, const dvec3& at, bool surf
 TEST(ReferenceLaws, ALampAndASensorCanChangePlaces) {
     const dvec3 a(-0.7, 0.3, 0.4), b(0.7, -0.3, -0.2);
     Medium smoke = matter(MediumKind::Grid, 0.95, 0.7);
-    smoke.density = lumpyGrid(2.4, 3, 41);
-    expectSameLight(fluence(smoke, a, b, false), fluence(smoke, b, a, false), 800, "smoke", 1e6);
+    smoke.density = lumpyGrid(2.4, 1.5, 41);
+    expectSameLight(fluence(smoke, a, b, false), fluence(smoke, b, a, false), 800, "smoke", 1.5e6);
     expectSameLight(fluence(smoke, a, b, true), fluence(smoke, b, a, true), 801,
-                    "smoke and surfaces", 1e6);
+                    "smoke and surfaces", 1.5e6);
 }
 
 // Cox's theorem for single paths: in a white room under a white sky nothing can be seen (T5).
