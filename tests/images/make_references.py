@@ -30,14 +30,14 @@ def scene_file(name):
     return str(copy.relative_to(ROOT))
 
 
-def make(program, name, size, samples):
+def make(program, name, size, terms, samples):
     """Renders one picture, or finds it there; returns its file."""
     scene = scene_file(name)
     if scene is None:
         print(f"{name}: left out, the shared content is not at {CONTENT}")
         return None
-    print(f"{name}: {size}, {samples} samples a pixel", flush=True)
-    run = subprocess.run([program, "reference", scene, "--size", size, "--spp", samples, "--half", "--cache", str(FOLDER.relative_to(ROOT))],
+    print(f"{name}: {size}, {terms}, {samples} samples a pixel", flush=True)
+    run = subprocess.run([program, "reference", scene, "--size", size, "--terms", terms, "--spp", samples, "--half", "--cache", str(FOLDER.relative_to(ROOT))],
                          cwd=ROOT, stdout=subprocess.PIPE, text=True)
     if run.returncode != 0:
         sys.exit(f"make_references.py: '{name}' failed, see above")
