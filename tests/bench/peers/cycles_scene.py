@@ -1,7 +1,7 @@
 """Renders a Tyndall scene file with Cycles. Runs inside Blender (3.4 is what it was written for):
 
     blender -b --factory-startup -noaudio -P tests/bench/peers/cycles_scene.py -- SCENE.json -o out.exr \\
-        --size 96x54 --spp 64 --threads 2 --seed 1 [--depth 0] [--step 0.5] [--json out.json] [--png out.png]
+        --size 96x54 --spp 64 --threads 2 --seed 1 [--depth 0] [--step 1] [--json out.json] [--png out.png]
 
 What it understands is what the peer benchmark needs, and means exactly the same thing in both renderers: planes and boxes with
 Lambertian materials, glTF files as sponza_lambert.py writes them, homogeneous boxes, OpenVDB grids, Henyey-Greenstein, point
@@ -472,7 +472,7 @@ def parse(argv):
     parser.add_argument("--threads", type=int, default=1)
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("--depth", type=int, default=-1, help="scatterings after the first: 0 is direct light alone (-1: no limit)")
-    parser.add_argument("--step", type=float, default=0.5, help="step of the march through a grid, in voxels (0.5)")
+    parser.add_argument("--step", type=float, default=1, help="step of the march through a grid, in voxels (1, Blender's own)")
     parser.add_argument("--json", help="seconds and mean colour go there")
     parser.add_argument("--png", help="the picture to look at")
     parser.add_argument("--exposure", type=float, default=0, help="stops, for the PNG alone")

@@ -67,6 +67,11 @@ def run(command, log):
     return seconds, usage.ru_utime + usage.ru_stime
 
 
+def version_of(program):
+    said = subprocess.run([program, "--version"], capture_output=True, text=True).stdout.strip()
+    return said.splitlines()[0] if said else "unknown"
+
+
 class Tyndall:
     """`tyndall reference`."""
     name = "Tyndall"
@@ -79,34 +84,51 @@ class Tyndall:
             raise Failed(f"there is no '{self.program}'; --build names the folder of the build")
         if subprocess.run([self.program, "reference", "--help"], capture_output=True).returncode:
             raise Failed(f"'{self.program}' has no command 'reference'; build a newer one")
-        version = subprocess.run([self.program, "--version"], capture_output=True, text=True)
-        self.version = version.stdout.strip().splitlines()[0] if version.stdout.strip() else "unknown"
+        self.version = version_of(self.program)
 
     def render(self, scene, output, spp, seed):
         return run([self.program, "reference", scene, "-o", output, "--size", self.arguments.size, "--spp", spp, "--seed", seed,
-                    "--threads", self.arguments.threads, "--checkpoint", 86400, "-q"], output.with_suffix(".log"))
+                    "--threads", self.arguments.threads, "--checkpoint", 86400, "--report", output.with_suffix(".json"), "-q"],
+                   output.with_suffix(".log"))
+
+    @staticmethod
+    def says(report):
+        """Seconds that the program itself counts: of sampling alone."""
+        return report["render_seconds"]
 
 
 class Cycles:
-    """Cycles, by cycles_scene.py inside Blender."""
-    name = "Cycles"
-    key = "cycles"
+    """Cycles, by cycles_scene.py inside Blender, marching through grids in steps of so many voxels."""
 
-    def __init__(self, arguments):
+    def __init__(self, arguments, step, with_grid):
+        self.step = step
+        self.key = f"cycles-{step:g}" if with_grid else "cycles"
+        self.name = engine_names(arguments)[self.key]
         self.program = arguments.blender
         self.arguments = arguments
-        version = subprocess.run([self.program, "--version"], capture_output=True, text=True)
-        self.version = version.stdout.strip().splitlines()[0] if version.stdout.strip() else "unknown"
 
     def render(self, scene, output, spp, seed):
         output.unlink(missing_ok=True)
         log = output.with_suffix(".log")
         times = run([self.program, "-b", "--factory-startup", "-noaudio", "-P", HERE / "cycles_scene.py", "--", scene, "-o", output,
                      "--size", self.arguments.size, "--spp", spp, "--seed", seed, "--threads", self.arguments.threads,
-                     "--step", self.arguments.step, "--json", output.with_suffix(".json")], log)
+                     "--step", self.step, "--json", output.with_suffix(".json")], log)
         if not output.is_file():  # Blender ends with 0 whatever became of the script
             raise Failed(f"Cycles wrote no '{output}'; what it said is in {log}")
         return times
+
+    @staticmethod
+    def says(report):
+        """Seconds that the program itself counts: Blender's call, with synchronisation and the building of the BVH."""
+        return report["seconds"]
+
+
+def cycles(scene, arguments):
+    """Cycles once for each step where the scene has a grid, else once: fog without detail is closed form to it."""
+    if "cycles" not in arguments.engines:
+        return []
+    with_grid = any(node.get("medium", {}).get("type") == "grid" for node in json.loads(scene.read_text())["nodes"])
+    return [Cycles(arguments, step, with_grid) for step in (arguments.steps if with_grid else arguments.steps[:1])]
 
 
 def compare(program, a, b):
@@ -156,7 +178,8 @@ def measure(scene, name, engines, program, arguments, say):
                 output = folder / f"{name}-{engine.key}-{spp}-{seed}.exr"
                 times[engine.key, spp] = engine.render(scene, output, spp, seed)
         for engine in engines:
-            entry = {"seed": seed}
+            said = {spp: json.loads((folder / f"{name}-{engine.key}-{spp}-{seed}.json").read_text()) for spp in (low, high)}
+            entry = {"seed": seed, "program_says": {str(spp): engine.says(report) for spp, report in said.items()}}
             for i, clock in enumerate(("wall", "processor")):
                 t = {spp: times[engine.key, spp][i] for spp in (low, high)}
                 entry[clock] = {"seconds": {str(spp): t[spp] for spp in t}, "per_sample": (t[high] - t[low]) / (high - low)}
@@ -166,9 +189,10 @@ def measure(scene, name, engines, program, arguments, say):
     for engine in engines:
         add_pairs(program, folder, name, engine.key, runs[engine.key], high)
     result = {"engines": {key: summary(entries, high) for key, entries in runs.items()}, "runs": runs}
-    if len(engines) == 2:
-        result["ratio"] = ratio(runs, high)
-        result["same_picture"] = same_picture(program, truth, result["engines"], arguments)
+    for key in runs if "tyndall" in runs else ():
+        if key != "tyndall":
+            result["engines"][key]["ratio"] = ratio(runs["tyndall"], runs[key], high)
+            result["engines"][key]["same_picture"] = same_picture(program, truth[key], truth["tyndall"], result["engines"], key, arguments)
     return result
 
 
@@ -204,18 +228,18 @@ def summary(entries, spp):
     return result
 
 
-def ratio(runs, spp):
+def ratio(tyndall, cycles, spp):
     """Cycles' seconds to the same error over Tyndall's: repetition by repetition, since those ran side by side."""
     result = {}
     for clock in ("wall", "processor"):
-        t, c = efficiencies(runs["tyndall"], spp, clock), efficiencies(runs["cycles"], spp, clock)
+        t, c = efficiencies(tyndall, spp, clock), efficiencies(cycles, spp, clock)
         result[clock] = spread([b / a for a, b in zip(t, c)])
     return result
 
 
-def same_picture(program, truth, engines, arguments):
-    metrics = compare(program, truth["cycles"], truth["tyndall"])
-    noise = sum(engine["variance"]["median"] for engine in engines.values()) / arguments.reference_spp
+def same_picture(program, image, truth, engines, key, arguments):
+    metrics = compare(program, image, truth)
+    noise = sum(engines[k]["variance"]["median"] for k in ("tyndall", key)) / arguments.reference_spp
     return {"energy": metrics["energy"], "energy_rgb": [metrics[f"energy_{c}"] for c in "rgb"], "relmse": metrics["relmse"], "relmse_of_noise": noise}
 
 
@@ -230,25 +254,32 @@ def with_spread(value, digits=3):
     return number(value["median"], digits) + ("" if factor in (None, 1.0) else f" ×/÷ {factor:.2f}")
 
 
-def table(results, engines):
+def engine_names(arguments):
+    """Key and name of every row that a scene may have."""
+    names = {"tyndall": "Tyndall", "cycles": "Cycles"}
+    return names | {f"cycles-{step:g}": f"Cycles, steps of {step:g} voxel{'' if step == 1 else 's'}" for step in arguments.steps}
+
+
+def table(results, arguments):
     head = ["scene", "program", "samples a pixel, per s", "variance of a sample", "seconds to relmse 1", "processor seconds", "Cycles / Tyndall"]
     lines = ["| " + " | ".join(head) + " |", "| --- | --- |" + " ---: |" * (len(head) - 2)]
+    names = engine_names(arguments)
     for name, result in results.items():
-        for engine in engines:
-            s = result["engines"][engine.key]
+        for key, s in result["engines"].items():
             rate = s["wall"]["per_sample"]["median"]
-            last = with_spread(result["ratio"]["wall"]) if "ratio" in result and engine is engines[-1] else ""
-            lines.append("| " + " | ".join([name, engine.name, number(1 / rate if rate > 0 else None), with_spread(s["variance"]),
+            last = with_spread(s["ratio"]["wall"]) if "ratio" in s else ""
+            lines.append("| " + " | ".join([name, names[key], number(1 / rate if rate > 0 else None), with_spread(s["variance"]),
                                             with_spread(s["wall"]["efficiency"]), with_spread(s["processor"]["efficiency"]), last]) + " |")
     return "\n".join(lines) + "\n"
 
 
-def agreement(results):
-    rows = [(name, r["same_picture"]) for name, r in results.items() if "same_picture" in r]
+def agreement(results, arguments):
+    names = engine_names(arguments)
+    rows = [(name, names[key], e["same_picture"]) for name, r in results.items() for key, e in r["engines"].items() if "same_picture" in e]
     if not rows:
         return ""
-    lines = ["| scene | energy, Cycles / Tyndall | relmse between them | of that, noise |", "| --- | ---: | ---: | ---: |"]
-    lines += [f"| {name} | {s['energy']:.4f} | {s['relmse']:.2e} | {s['relmse_of_noise']:.2e} |" for name, s in rows]
+    lines = ["| scene | program | energy, Cycles / Tyndall | relmse between them | of that, noise |", "| --- | --- | ---: | ---: | ---: |"]
+    lines += [f"| {name} | {program} | {s['energy']:.4f} | {s['relmse']:.2e} | {s['relmse_of_noise']:.2e} |" for name, program, s in rows]
     return "\n".join(lines) + "\n"
 
 
@@ -257,14 +288,14 @@ def machine():
     return f"{os.cpu_count()} cores of {names[0] if names else 'an unknown processor'}"
 
 
-def page_text(results, engines, arguments):
+def page_text(results, versions, arguments):
     low, high = arguments.spp
-    text = f"""Made on {time.strftime("%Y-%m-%d")}, on {machine()}, load {os.getloadavg()[0]:.1f} at the end, with {" and ".join(e.version for e in engines)}: {arguments.size},
-{low} and {high} samples a pixel, {arguments.threads} threads, {arguments.repeats} repetitions, means of {arguments.reference_spp} samples, Cycles' steps
-{arguments.step} voxels. "×/÷" is one standard deviation over the repetitions.
+    text = f"""Made on {time.strftime("%Y-%m-%d")}, on {machine()}, load {os.getloadavg()[0]:.1f} at the end, with {" and ".join(versions)}: {arguments.size},
+{low} and {high} samples a pixel, {arguments.threads} threads, {arguments.repeats} repetitions, means of {arguments.reference_spp} samples.
+"×/÷" is one standard deviation over the repetitions.
 
-{table(results, engines)}"""
-    same = agreement(results)
+{table(results, arguments)}"""
+    same = agreement(results, arguments)
     return text + (f"\nThe same picture? From the means of {arguments.reference_spp} samples:\n\n{same}" if same else "")
 
 
@@ -298,7 +329,8 @@ def parse():
     parser.add_argument("--repeats", type=int, default=5)
     parser.add_argument("--threads", type=int, default=os.cpu_count())
     parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--step", type=float, default=0.5, help="Cycles' step through a grid, in voxels (0.5)")
+    parser.add_argument("--steps", type=lambda text: [float(n) for n in text.split(",")], default=[1.0, 4.0], metavar="N,...",
+                        help="Cycles' steps through a grid, in voxels: a row for each (1,4)")
     parser.add_argument("--page", type=pathlib.Path, help="Markdown page that gets the table")
     parser.add_argument("-q", "--quiet", action="store_true")
     arguments = parser.parse_args()
@@ -321,21 +353,21 @@ def main():
     try:
         tyndall = Tyndall(arguments)  # also compares the pictures
         engines = [tyndall] if "tyndall" in arguments.engines else []
-        engines += [Cycles(arguments)] if "cycles" in arguments.engines else []
         arguments.output = arguments.output.resolve()
         arguments.output.mkdir(parents=True, exist_ok=True)
         content = pathlib.Path(os.environ.get("TYNDALL_CONTENT", ROOT.parent / "shared/content")).resolve()
+        versions = [tyndall.version] + ([version_of(arguments.blender)] if "cycles" in arguments.engines else [])
         results = {}
         for name in arguments.scenes:
             scene = prepare(name, content, arguments.output)
             if scene:
                 say = (lambda text: None) if arguments.quiet else (lambda text: print(text, file=sys.stderr, flush=True))
-                results[name] = measure(scene, name, engines, tyndall.program, arguments, say)
-                print(table({name: results[name]}, engines) + agreement({name: results[name]}), flush=True)
+                results[name] = measure(scene, name, engines + cycles(scene, arguments), tyndall.program, arguments, say)
+                print(table({name: results[name]}, arguments) + agreement({name: results[name]}, arguments), flush=True)
         settings = {key: str(value) if isinstance(value, pathlib.Path) else value for key, value in vars(arguments).items()}
-        report = {"machine": machine(), "versions": {e.key: e.version for e in engines}, "settings": settings, "scenes": results}
+        report = {"machine": machine(), "versions": versions, "settings": settings, "scenes": results}
         (arguments.output / "results.json").write_text(json.dumps(report, indent=2))
-        text = page_text(results, engines, arguments)
+        text = page_text(results, versions, arguments)
         (arguments.output / "table.md").write_text(text)
         if arguments.page:
             into_page(arguments.page, text)
