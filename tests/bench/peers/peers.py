@@ -364,6 +364,9 @@ def main():
                 say = (lambda text: None) if arguments.quiet else (lambda text: print(text, file=sys.stderr, flush=True))
                 results[name] = measure(scene, name, engines + cycles(scene, arguments), tyndall.program, arguments, say)
                 print(table({name: results[name]}, arguments) + agreement({name: results[name]}, arguments), flush=True)
+        if not results:
+            print("peers.py: skipped, the files of every scene asked for are missing")
+            return 0
         settings = {key: str(value) if isinstance(value, pathlib.Path) else value for key, value in vars(arguments).items()}
         report = {"machine": machine(), "versions": versions, "settings": settings, "scenes": results}
         (arguments.output / "results.json").write_text(json.dumps(report, indent=2))
