@@ -35,6 +35,7 @@ struct Image {
 struct ImageLayer {
     std::string name; // "" is the main layer (channels R, G, B); others are NAME.R …
     Image image;
+    bool alwaysFloat = false; // 32 bits even in a file of 16-bit floats: for what is very small or very large
 };
 
 using ImageMetadata = std::map<std::string, std::string>;

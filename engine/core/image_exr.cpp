@@ -75,14 +75,15 @@ std::string encode(std::span<const ImageLayer> layers, const ImageMetadata& meta
     header.compression() = Imf::ZIP_COMPRESSION;
     for (const auto& [key, value] : metadata) header.insert(key, Imf::StringAttribute(value));
 
-    const Imf::PixelType type = depth == ExrDepth::Half ? Imf::HALF : Imf::FLOAT;
     std::vector<std::vector<half>> halves; // Imf does not convert on writing
     Imf::FrameBuffer frame;
     for (const ImageLayer& layer : layers) {
         const Image& image = layer.image;
         const char* base = reinterpret_cast<const char*>(image.pixels.data());
         size_t sampleBytes = sizeof(float);
-        if (depth == ExrDepth::Half) {
+        const bool isHalf = depth == ExrDepth::Half && !layer.alwaysFloat;
+        const Imf::PixelType type = isHalf ? Imf::HALF : Imf::FLOAT;
+        if (isHalf) {
             std::vector<half>& converted = halves.emplace_back(image.pixels.size());
             std::transform(image.pixels.begin(), image.pixels.end(), converted.begin(),
                            [](float v) { return half(v); });

@@ -202,7 +202,7 @@ Outcome ReferenceRun::writePicture() {
     for (uint32_t i = 0; i < kTermCount; ++i)
         if (film.terms() & bit(Term(i)))
             layers.push_back({std::string(termName(Term(i))), film.term(Term(i))});
-    layers.push_back({"variance", film.variance()});
+    layers.push_back({"variance", film.variance(), true});
     const ImageMetadata metadata = {{"tyndall.scene", options_.scene},
                                     {"tyndall.size", options_.size},
                                     {"tyndall.version", TYNDALL_VERSION},

@@ -62,6 +62,22 @@ TEST(Exr, HalfKeepsElevenBits) {
                     std::ldexp(image.pixels[i], -11));
 }
 
+TEST(Exr, ALayerMayKeep32BitsInAFileOf16) {
+    const fs::path path = test::scratchDir("exr") / "mixed.exr";
+    // Below and above what 16 bits hold.
+    Image variance(2, 1, 3);
+    variance.pixels = {1e-12f, 1e9f, 0.1f, 3e-30f, 7e20f, 1.0f};
+    ASSERT_TRUE(
+        writeExr(path,
+                 std::vector<ImageLayer>{{"", picture(2, 1, 3)}, {"variance", variance, true}}, {},
+                 ExrDepth::Half)
+            .ok());
+    const Result<ExrFile> file = readExr(path);
+    ASSERT_TRUE(file.ok()) << file.message();
+    ASSERT_NE(find(*file, "variance"), nullptr);
+    EXPECT_EQ(find(*file, "variance")->image.pixels, variance.pixels);
+}
+
 TEST(Exr, OneFlippedBitOrACutNeverCrashesAndACutIsRefused) {
     const fs::path folder = test::scratchDir("exr-damage");
     ASSERT_TRUE(writeExr(folder / "good.exr", std::vector<ImageLayer>{{"", picture(40, 40, 3)}},
