@@ -118,6 +118,7 @@ def main():
 
 Made by `tests/bench/tables.py` from a release build of {commit_date()}, on {machine()}
 with {any_report["gl"]["renderer"]} ({any_report["gl"]["version"]}, {any_report["backend"]}): {arguments.frames} frames each, direct light and single scattering. Software rendering: the numbers compare passes and scenes with each other; a GPU is another world.
+Beside another path tracer: [peers.md](peers.md).
 
 ## Frames, start-up, memory
 The median and the 95th percentile leave out the first frame, in which shaders are compiled. "First picture after" counts from the
