@@ -139,9 +139,9 @@ std::vector<PlacedMedium> MediaSystem::choose(const MediaFrameRequest& request,
 }
 
 /// Cell by cell a ray through a grid has hundreds of segments, and each light asked for at each of them is a march of its own: frames
-/// that are averaged ask at every eighth. It is not speed alone: llvmpipe ends all loops of a shader after 65,535 rounds in
-/// all (LP_MAX_TGSI_LOOP_ITERATIONS), and the rest of the ray would be missing.
-constexpr uint32_t kCellsAGather = 8;
+/// that are averaged ask for so many times fewer of the environment's lights. It is not speed alone: llvmpipe ends all loops of a
+/// shader after 65,535 rounds in all (LP_MAX_TGSI_LOOP_ITERATIONS), and the rest of the ray would be missing.
+constexpr uint32_t kFewerPerCell = 8;
 
 gpu::MediaHeader MediaSystem::makeHeader(const MediaFrameRequest& request,
                                          std::vector<PlacedMedium>& chosen) {
@@ -175,7 +175,7 @@ gpu::MediaHeader MediaSystem::makeHeader(const MediaFrameRequest& request,
         uint32_t(std::count_if(request.lights.begin(), request.lights.end(), fromEnvironment));
     const auto atOnce = uint32_t(settings_.environmentLights);
     header.environmentStride = (header.environmentLights + atOnce - 1) / atOnce;
-    header.gatherStride = converge && exact && header.gridCount > 0 ? kCellsAGather : 1;
+    if (converge && exact && header.gridCount > 0) header.environmentStride *= kFewerPerCell;
     return header;
 }
 

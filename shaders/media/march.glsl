@@ -232,28 +232,21 @@ MarchResult marchMedia(Ray ray, float distance, uint flags, uint lightCount, uve
     }
     vec3 noise = vec3(pixelNoise(pixel, 0u), pixelNoise2(pixel, 1u));
     uint turn = uint(pixelNoise(pixel, 3u) * float(mediaHeader.environmentStride));
-    uint gatherStride = max(mediaHeader.gatherStride, 1u);
-    uint untilGather = uint(pixelNoise(pixel, 5u) * float(gatherStride));
     float opaque = -log(max(mediaHeader.minTransmittance, 1e-30));
     for (int i = 0; i < kMostSegments && t < end && minimumOf(result.opticalDepth) < opaque; ++i) {
         Segment s = marchSegment(ray, t, end);
         t = s.start + s.size;
         vec3 transmittance = exp(-result.opticalDepth);
 #if MARCH_GATHERS
-        if ((flags & kMarchInScatter) != 0u && s.scatters) {
-            if (untilGather == 0u) {
-                result.inScatter += transmittance * float(gatherStride) * segmentInScatter(ray, s, lightCount, noise, turn);
-                ++turn;
-                untilGather = gatherStride;
-            }
-            --untilGather;
-        }
+        if ((flags & kMarchInScatter) != 0u && s.scatters)
+            result.inScatter += transmittance * segmentInScatter(ray, s, lightCount, noise, turn);
 #endif
         if ((flags & kMarchEmission) != 0u)
             result.emission += transmittance * s.emission * oneMinusExpOverX(s.depth);
         result.opticalDepth = min(result.opticalDepth + s.depth, vec3(kOpaque));
         // Golden ratio and its generalisation to two dimensions: neighbouring segments differ as much as they can.
         noise = fract(noise + vec3(0.61803399, 0.75487767, 0.56984029));
+        ++turn;
     }
     if (t < distance) result.opticalDepth = min(result.opticalDepth + opticalDepthBetween(ray.origin, ray.direction, t, distance), vec3(kOpaque));
     return result;

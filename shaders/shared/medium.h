@@ -41,9 +41,9 @@ struct MediaHeader {
     float minTransmittance;  // where a march ends
     uint environmentFirst;   // number of the first of the lights that stand for the environment; they are neighbours
     uint environmentLights;  // how many they are
-    uint environmentStride;  // a segment of a march gathers from every so many-th of them; 0 as 1
-    uint gatherStride;       // a march gathers light from every so many-th segment for all, others in each averaged frame; 0 as 1
+    uint environmentStride;  // a segment of a march gathers from every so many-th of them, perhaps of none; 0 as 1
     uint padding0;
+    uint padding1;
 };
 #ifdef __cplusplus
 static_assert(sizeof(MediaHeader) % 16 == 0, "the media follow it in one buffer");
