@@ -20,7 +20,7 @@ constexpr const char* kExamples =
     "      goes on where a run that was stopped or killed left off: give the other options as before\n"
     "  tyndall reference smoke.scene.json -o direct.exr --terms LE,LSE,LVE\n"
     "\nThe EXR holds the picture (R G B), each transport term and the variance of the mean. While it works, the picture so\n"
-    "far is in OUT.exr and all that is needed to go on in OUT.exr.resume, both at most half a minute old.";
+    "far is in OUT.exr and all that is needed to go on in OUT.exr.resume, both saved about every half minute.";
 
 Error wrong(std::string sentence) { return Error{std::move(sentence)}; }
 

@@ -269,6 +269,7 @@ void VolumePathTracer::aimFromSegment(const Ray& ray) {
     double
         met; // the density of a collision there that then meets the light, over that of the collision
     double collided = 0; // of aimFromCollision, likewise
+    double drawnAs = 1;  // true density of the direction drawn, over the one it is weighed by
     const bool even =
         light == scene_.lights->environmentIndex() && scene_.lights->environment().constant();
     if (even) { // light from all around: the phase function is the best to draw from
@@ -277,6 +278,8 @@ void VolumePathTracer::aimFromSegment(const Ray& ray) {
         aimed.distance = kInfinity;
         aimed.radiance = scene_.lights->environment().radiance(aimed.direction);
         aimed.density = met = meanOf(phase);
+        // The hero draws it; all heroes together, as likely as their channels' paths, draw it with this density.
+        drawnAs = meanOf(weights_.ratio * phase) / (meanOf(weights_.ratio) * met);
     } else {
         aimed = scene_.lights->aim(light, position, u, w);
         if (!aimed.valid()) return;
@@ -290,8 +293,9 @@ void VolumePathTracer::aimFromSegment(const Ray& ray) {
     const double others = segment_.flightDensity(t) * (met + collided);
     const dvec3 toHere = transmittance(*scene_.media, ray, t, settings_.transmittance, *sampler_);
     const dvec3 light3 = arriving(aimed, {position, aimed.direction});
-    see(history_.termAfter(Scattering::Medium),
-        weights_.carried() * toHere * aimedPoint_.scattering * phase * light3 / (density + others));
+    see(history_.termAfter(Scattering::Medium), weights_.carried() * toHere *
+                                                    aimedPoint_.scattering * phase * light3 /
+                                                    ((density + others) * drawnAs));
 }
 
 // --- Light met by chance.
