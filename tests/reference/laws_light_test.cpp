@@ -111,6 +111,27 @@ TEST(ReferenceLaws, AGlowingBoxLightsAWideFloorByAimingAsMuchAsByChance) {
     }
 }
 
+// T12 again, where channels differ in what they are scattered by and so in where to: red forwards, blue backwards, in one place.
+TEST(ReferenceLaws, AConstantSkyThroughOverlappingColoursIsTheSameAimedAtOrNot) {
+    SceneMaker maker;
+    Medium red = matter(MediumKind::Sphere, 1, 0.9), blue = matter(MediumKind::Sphere, 1, -0.9);
+    red.size = blue.size = dvec3(3);
+    red.scattering = {2.0f, 0.7f, 0.05f};
+    red.absorption = {0.05f, 0.3f, 0.8f};
+    blue.scattering = {0.05f, 0.7f, 2.0f};
+    blue.absorption = {0.8f, 0.3f, 0.05f};
+    maker.addMedium(red);
+    maker.addMedium(blue);
+    maker.scene().environment.radiance = {1, 1, 1};
+    const auto stage = Stage::make(maker.take());
+    reference::PathSettings none;
+    none.aimAtLights = false;
+    for (const int channel : {0, 1, 2})
+        expectSameLight(gaze(stage, {0, 0, 4}, dvec3(0), 1, channel),
+                        gaze(stage, {0, 0, 4}, dvec3(0), 1, channel, none), uint64_t(870 + channel),
+                        "channel " + std::to_string(channel), 3e6);
+}
+
 /// Fluence at `at` of a lamp of 1 W/sr at `lamp`, but for what comes straight from it.
 Probe fluence(const Medium& smoke, const dvec3& lamp, const dvec3& at, bool surfaces) {
     SceneMaker maker;
@@ -153,7 +174,7 @@ TEST(ReferenceLaws, ALampAndASensorCanChangePlaces) {
                     "smoke and surfaces", 1.5e6);
 }
 
-// Cox's theorem for single paths: in a white room under a white sky nothing can be seen (T5).
+// In a white world under a white sky nothing can be seen (T5).
 TEST(ReferenceLaws, AWhiteWorldUnderAWhiteSkyIsWhite) {
     SceneMaker maker;
     Medium smoke = matter(MediumKind::Grid, 1, 0.9), haze = matter(MediumKind::Sphere, 1, -0.7);
