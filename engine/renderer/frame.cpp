@@ -100,7 +100,8 @@ FrameImages recordFrame(fg::FrameGraph& graph, const FrameParts& parts, const Fr
     MediaFrame media = parts.media.beginFrame(
         graph, {&order.view, order.surfaceBounds, parts.lights.lights(), false});
     addOpticalDepthPass(graph, parts.media, media);
-    const LightResources lights = parts.lights.addPasses(graph, parts.surfaces, order.view);
+    const bool lit = (order.plan->rendered & ~bit(Term::LE)) != 0;
+    const LightResources lights = parts.lights.addPasses(graph, parts.surfaces, order.view, lit);
 
     // Direct light on surfaces and in media.
     const SurfaceLight surfaces =

@@ -285,7 +285,7 @@ void LightSystem::update(const LightFrame& frame) {
 }
 
 LightResources LightSystem::addPasses(fg::FrameGraph& graph, const GpuScene& scene,
-                                      const ViewResources& view) {
+                                      const ViewResources& view, bool shadows) {
     struct Data {
         fg::BufferHandle lights;
         const gpu::LightData* data;
@@ -324,9 +324,9 @@ LightResources LightSystem::addPasses(fg::FrameGraph& graph, const GpuScene& sce
                         context.clearBuffer(data.lights, 0);
                 })
             .lights;
-    const ShadowResources shadows = shadows_.addPasses(graph, scene, plan_, view);
-    resources.shadowAtlas = shadows.atlas;
-    resources.shadowViews = shadows.views;
+    const ShadowResources maps = shadows_.addPasses(graph, scene, plan_, view, shadows);
+    resources.shadowAtlas = maps.atlas;
+    resources.shadowViews = maps.views;
     resources.clusters = addLightClusterPass(graph, view, balls_, globalCount_, lightSettings_);
     return resources;
 }

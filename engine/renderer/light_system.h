@@ -4,7 +4,7 @@
 //
 //   lights.update(frame);              // each frame
 //   media.update(lights.lights());     // may set opticalDepthIndex
-//   LightResources resources = lights.addPasses(graph, gpuScene, view);
+//   LightResources resources = lights.addPasses(graph, gpuScene, view, true);
 
 #include <cstdint>
 #include <span>
@@ -57,8 +57,9 @@ public:
     [[nodiscard]] const std::vector<std::string>& notes() const { return notes_; }
 
     /// Uploads, draws and lists. The frame's update() must have been called; `scene` is read when the graph runs.
+    /// `shadows`: false where no term is rendered that a shadow could fall on.
     LightResources addPasses(fg::FrameGraph& graph, const GpuScene& scene,
-                             const ViewResources& view);
+                             const ViewResources& view, bool shadows);
 
 private:
     struct Collected {

@@ -131,7 +131,8 @@ void ShadowPass::draw(const Data& data, fg::PassContext& context) {
 }
 
 ShadowResources ShadowPass::addPasses(fg::FrameGraph& graph, const GpuScene& scene,
-                                      const ShadowPlan& plan, const ViewResources& view) {
+                                      const ShadowPlan& plan, const ViewResources& view,
+                                      bool wanted) {
     struct Upload {
         fg::BufferHandle views;
         const gpu::ShadowView* data;
@@ -164,7 +165,7 @@ ShadowResources ShadowPass::addPasses(fg::FrameGraph& graph, const GpuScene& sce
                               })
                           .views;
 
-    if (plan.views.empty()) {
+    if (plan.views.empty() || !wanted) {
         resources.atlas =
             graph
                 .addPass<Data>(
@@ -173,8 +174,9 @@ ShadowResources ShadowPass::addPasses(fg::FrameGraph& graph, const GpuScene& sce
                         data.atlas = builder.create(
                             "shadow.atlas", fg::texture2DArray(fg::Format::Depth32F, 1, 1, 1),
                             fg::Access::DepthTarget);
-                        builder.skip(scene.items().empty() ? "no surface in the scene"
-                                                           : "no light casts a shadow");
+                        builder.skip(!wanted ? "only emission is rendered"
+                                     : scene.items().empty() ? "no surface in the scene"
+                                                             : "no light casts a shadow");
                     },
                     [](const Data&, fg::PassContext&) {})
                 .atlas;

@@ -20,9 +20,11 @@ struct ShadowResources {
 
 class ShadowPass {
 public:
-    /// `plan` and `scene` are read when the graph runs. One object draws for one executor.
+    /// `plan` and `scene` are read when the graph runs. One object draws for one executor. `wanted`: false where the
+    /// frame renders no term that a shadow could fall on; the maps outlive the frame, so that the graph keeps
+    /// their pass even where nobody reads it.
     ShadowResources addPasses(fg::FrameGraph& graph, const GpuScene& scene, const ShadowPlan& plan,
-                              const ViewResources& view);
+                              const ViewResources& view, bool wanted);
     [[nodiscard]] uint64_t mapsDrawn() const { return mapsDrawn_; }
 
 private:

@@ -47,6 +47,29 @@ struct MarchResult {
 const float kPointsPerRadian = 2.5; // at which light is gathered, as the light sees them
 const int kMostSegments = 16384; // ends a march whose coordinates have lost their meaning
 
+// ---- inside a segment ------------------------------------------------------------------------------------------
+
+/// Extinction is taken to change linearly over the segment, between the values at its ends.
+/// Fraction of the segment's optical depth before `x`.
+float depthFraction(Segment s, float x) {
+    float sum = s.extinctionStart + s.extinctionEnd;
+    if (sum <= 0.0) return x;
+    return x * (2.0 * s.extinctionStart + (s.extinctionEnd - s.extinctionStart) * x) / sum;
+}
+
+/// Light that blackbodies in the segment send back along the ray, seen from the segment's start. A flame's radiance changes tenfold
+/// from voxel to voxel: no one point stands for a segment. Averaged frames take a point anywhere in it (`u`: 0..1), which is
+/// unbiased; a single one takes the two of Gauss and Legendre.
+vec3 blackbodyLight(Ray ray, Segment s, float u) {
+    vec3 sum = vec3(0.0);
+    int points = viewConverges() ? 1 : 2;
+    for (int i = 0; i < points; ++i) {
+        float x = points == 1 ? u : (i == 0 ? 0.21132487 : 0.78867513);
+        sum += exp(-s.depth * depthFraction(s, x)) * blackbodyEmission(ray.origin + ray.direction * (s.start + s.size * x));
+    }
+    return sum * (s.size / float(points));
+}
+
 #if MARCH_GATHERS
 // ---- where in a segment light is gathered ----------------------------------------------------------------------
 
@@ -57,15 +80,7 @@ struct GatherPoint {
     vec3 weight;
 };
 
-/// Extinction is taken to change linearly over the segment, between the values at its ends.
-/// Fraction of the segment's optical depth before `x`.
-float depthFraction(Segment s, float x) {
-    float sum = s.extinctionStart + s.extinctionEnd;
-    if (sum <= 0.0) return x;
-    return x * (2.0 * s.extinctionStart + (s.extinctionEnd - s.extinctionStart) * x) / sum;
-}
-
-/// The inverse: where the fraction `f` of the optical depth lies before.
+/// The inverse of depthFraction(): where the fraction `f` of the optical depth lies before.
 float fractionAtDepth(Segment s, float f) {
     float a = s.extinctionStart;
     float b = s.extinctionEnd;
@@ -242,7 +257,7 @@ MarchResult marchMedia(Ray ray, float distance, uint flags, uint lightCount, uve
             result.inScatter += transmittance * segmentInScatter(ray, s, lightCount, noise, turn);
 #endif
         if ((flags & kMarchEmission) != 0u)
-            result.emission += transmittance * s.emission * oneMinusExpOverX(s.depth);
+            result.emission += transmittance * (s.emission * oneMinusExpOverX(s.depth) + (s.glows ? blackbodyLight(ray, s, noise.x) : vec3(0.0)));
         result.opticalDepth = min(result.opticalDepth + s.depth, vec3(kOpaque));
         // Golden ratio and its generalisation to two dimensions: neighbouring segments differ as much as they can.
         noise = fract(noise + vec3(0.61803399, 0.75487767, 0.56984029));

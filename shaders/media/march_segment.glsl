@@ -20,10 +20,11 @@ struct Segment {
     float size;
     vec3 depth;            // optical depth
     vec3 scattering[MARCH_PHASE_GROUPS]; // scattering coefficient times length, of each phase group
-    vec3 emission;         // nits that would leave it without extinction
+    vec3 emission;         // nits that would leave it without extinction; not the blackbodies' (blackbodyLight in march.glsl)
     float extinctionStart; // mean over the channels, at the ends
     float extinctionEnd;
     bool scatters;
+    bool glows;            // a blackbody has part of it
 };
 
 /// Metres from `t` on after which the density of a height medium has summed up to `target` metres; 1e30 where it never does.
@@ -213,7 +214,7 @@ void addMedium(uint m, Ray ray, inout Segment s) {
     s.scattering[media[m].phaseGroup] += scattering * integral;
 #endif
     s.emission += media[m].emission.rgb * integral;
-    if (media[m].emission.w > 0.0) s.emission += blackbodyEmission(m, ray.origin + ray.direction * middle) * integral;
+    s.glows = s.glows || media[m].emission.w > 0.0;
 }
 
 /// The segment of the ray that begins at `t`.
@@ -230,6 +231,7 @@ Segment marchSegment(Ray ray, float t, float end) {
     s.extinctionStart = 0.0;
     s.extinctionEnd = 0.0;
     s.scatters = false;
+    s.glows = false;
     for (uint m = 0u; m < mediumCount(); ++m) addMedium(m, ray, s);
     s.depth = min(s.depth, vec3(kOpaque));
     return s;

@@ -202,7 +202,7 @@ void LightsTest::lookOnce(SceneMaker& maker, const std::vector<Probe>& probes,
     ASSERT_TRUE(uploaded.ok()) << uploaded.message();
     fg::FrameGraph& graph = executor_->beginFrame();
     lights_->update({&maker.scene, dvec3(0), gpuScene_->bounds(), &view});
-    const LightResources resources = lights_->addPasses(graph, *gpuScene_, view);
+    const LightResources resources = lights_->addPasses(graph, *gpuScene_, view, true);
     std::vector<vec4> data;
     for (const Probe& probe : probes) {
         data.push_back(vec4(vec3(probe.position), 1));

@@ -145,7 +145,7 @@ protected:
         const MediaFrame media =
             media_->beginFrame(graph, {&view, std::span(&bounds, 1), lights_->lights(), false});
         inputs.media = media.resources;
-        inputs.lights = lights_->addPasses(graph, *surfaces_, view);
+        inputs.lights = lights_->addPasses(graph, *surfaces_, view, true);
         inputs.environment = &*environment_;
         inputs.hasSurfaces = !surfaces_->items().empty();
         inputs.terms = options.terms;
