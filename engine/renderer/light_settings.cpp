@@ -16,6 +16,8 @@ const SettingDesc kLights[] = {
                 "Longest list; a cluster that more lights reach looks at every light."),
     TYNDALL_INT(LightSettings, environmentLights, "environment.lights", "Environment lights", "lights", 0, 256, 16,
                 "Directional lights, with shadows, that stand for the environment's light; 0 leaves surfaces and media unlit by it."),
+    TYNDALL_INT(LightSettings, mediumLights, "lights.media", "Lights of a glowing medium", "lights", 0, 64, 4,
+                "Lights, with shadows, that stand for the light of each glowing medium (a fire); 0: it is seen, but lights nothing."),
 };
 
 const SettingDesc kShadows[] = {
@@ -46,6 +48,8 @@ const PresetEntry kPresets[] = {
     {Quality::High, "lights.cutoff", "0.001"},          {Quality::Ultra, "lights.cutoff", "0"},
     {Quality::Low, "environment.lights", "4"},          {Quality::Medium, "environment.lights", "8"},
     {Quality::High, "environment.lights", "16"},        {Quality::Ultra, "environment.lights", "64"},
+    {Quality::Low, "lights.media", "1"},                {Quality::Medium, "lights.media", "2"},
+    {Quality::High, "lights.media", "4"},               {Quality::Ultra, "lights.media", "8"},
     {Quality::Low, "shadows.maxLights", "4"},           {Quality::Medium, "shadows.maxLights", "8"},
     {Quality::High, "shadows.maxLights", "16"},         {Quality::Ultra, "shadows.maxLights", "64"},
     {Quality::Low, "shadows.resolution", "1024"},       {Quality::Medium, "shadows.resolution", "2048"},

@@ -11,7 +11,7 @@ namespace tyndall {
 struct LightSettings {
     float cutoff;
     int32_t clusterMinimum, clusterColumns, clusterRows, clusterSlices, clusterCapacity;
-    int32_t environmentLights;
+    int32_t environmentLights, mediumLights;
 };
 
 struct ShadowSettings {

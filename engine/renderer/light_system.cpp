@@ -170,7 +170,24 @@ void LightSystem::collect(const LightFrame& frame) {
         seenEnvironment_ = scene.environment.version;
         environment_ = EnvironmentSampler(scene.environment);
     }
+    collectMedia(frame);
     scene_ = &scene;
+}
+
+/// A grid's light is summed up voxel by voxel: only when a medium has changed.
+void LightSystem::collectMedia(const LightFrame& frame) {
+    const Scene& scene = *frame.scene;
+    if (scene_ == &scene && seenMedia_ == scene.versions.media &&
+        seenMediaTransforms_ == scene.versions.transforms &&
+        seenMediaStructure_ == scene.versions.structure &&
+        mediaParts_ == lightSettings_.mediumLights)
+        return;
+    seenMedia_ = scene.versions.media;
+    seenMediaTransforms_ = scene.versions.transforms;
+    seenMediaStructure_ = scene.versions.structure;
+    mediaParts_ = lightSettings_.mediumLights;
+    media_ =
+        findMediumEmitters(scene, scene.worldTransforms(), scene.worldVisibility(), mediaParts_);
 }
 
 void LightSystem::addEnvironment(const LightFrame& frame, std::vector<Collected>& all) {
@@ -189,6 +206,28 @@ void LightSystem::addEnvironment(const LightFrame& frame, std::vector<Collected>
         c.data.shadowIndex = c.data.opticalDepthIndex = -1;
         c.strength = std::max({light.illuminance.x, light.illuminance.y, light.illuminance.z});
         all.push_back(c);
+    }
+}
+
+void LightSystem::addMedia(const LightFrame& frame, std::vector<Collected>& all) {
+    const gpu::ViewData& view = frame.view->data;
+    const bool converge = (view.flags & gpu::kViewConverge) != 0;
+    for (size_t i = 0; i < media_.emitters.size(); ++i) {
+        const MediumEmitter& emitter = media_.emitters[i];
+        const uint64_t key = fg::mixHash(uint64_t(view.seed) + 67, uint64_t(media_.nodes[i]));
+        for (const MediumLight& light :
+             converge ? emitter.sample(view.frameIndex, key) : emitter.lights()) {
+            Collected c;
+            c.node = media_.nodes[i];
+            c.strength = std::max({light.intensity.x, light.intensity.y, light.intensity.z});
+            if (!(c.strength > 0)) continue;
+            c.data.type = gpu::kLightPoint;
+            c.data.position = vec4(vec3(light.position - frame.renderOrigin), 0);
+            c.data.direction = vec4(0, 0, -1, float(light.radius));
+            c.data.intensity = vec4(vec3(light.intensity), float(kNearestPart * sceneRadius_));
+            c.data.shadowIndex = c.data.opticalDepthIndex = -1;
+            all.push_back(c);
+        }
     }
 }
 
@@ -254,12 +293,14 @@ void LightSystem::update(const LightFrame& frame) {
     CHECK(frame.scene && frame.view, "lights are made from a scene for a view");
     collect(frame);
     notes_ = sceneNotes_;
+    notes_.insert(notes_.end(), media_.notes.begin(), media_.notes.end());
     if (environment_.brokenPixels() > 0)
         notes_.push_back(fmt::format(
             "{} pixels of the environment are negative or not finite, and count as black",
             environment_.brokenPixels()));
     const bool converge = (frame.view->data.flags & gpu::kViewConverge) != 0;
     std::vector<Collected> all = collected_;
+    addMedia(frame, all);
     addEnvironment(frame, all);
     setReach(all, converge);
     std::stable_partition(all.begin(), all.end(), [](const Collected& c) { return c.reach <= 0; });

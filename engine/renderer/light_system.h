@@ -15,6 +15,7 @@
 #include "renderer/frame_resources.h"
 #include "renderer/light_cluster_pass.h"
 #include "renderer/light_settings.h"
+#include "renderer/medium_lights.h"
 #include "renderer/shadow_pass.h"
 #include "renderer/shadow_views.h"
 #include "scene/scene.h"
@@ -72,7 +73,9 @@ private:
     void collect(const LightFrame& frame);
     void collectLight(const Light& light, const dmat4& worldFromNode, int node,
                       const dvec3& origin);
+    void collectMedia(const LightFrame& frame);
     void addEnvironment(const LightFrame& frame, std::vector<Collected>& all);
+    void addMedia(const LightFrame& frame, std::vector<Collected>& all);
     void setReach(std::vector<Collected>& all, bool converge) const;
     void chooseShadows(const LightFrame& frame, const std::vector<Collected>& all);
 
@@ -85,6 +88,9 @@ private:
     double sceneRadius_ = 1;
     std::vector<Collected> collected_;
     EnvironmentSampler environment_;
+    MediumEmitters media_;
+    int32_t mediaParts_ = -1; // that media_ was made for
+    Version seenMedia_ = 0, seenMediaTransforms_ = 0, seenMediaStructure_ = 0;
     std::vector<gpu::LightData> lights_;
     std::vector<vec4> balls_; // of the lights from globalCount_ on: centre (render space) and reach
     std::vector<int> nodes_;

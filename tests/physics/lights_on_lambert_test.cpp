@@ -81,6 +81,26 @@ TEST(LightsOnLambert, DirectionalLightGivesLuxTimesCosine) {
         [](dvec3) { return 20 * std::cos(kPi / 6); });
 }
 
+/// What a clear ball of even glow sends past any point outside follows Newton's shell theorem: as if all of it came from the middle.
+TEST(LightsOnLambert, AGlowingBallOfGasLightsAsFromItsMiddle) {
+    const double intensity = 5 * 4.0 / 3 * kPi * std::pow(0.8, 3); // ∫ ε dV, candela
+    const auto lux = [&](dvec3 p) {
+        const dvec3 d = dvec3(0.3, 2, -0.4) - p;
+        return intensity * d.y / std::pow(glm::dot(d, d), 1.5);
+    };
+    const char* gas =
+        R"({"name": "gas", "medium": {"type": "homogeneous", "shape": "sphere", "size": [1.6, 1.6, 1.6],
+        "scattering": [0, 0, 0], "absorption": [0, 0, 0], "emission": [5, 5, 5]}, "translation": [0.3, 2, -0.4]})";
+    RenderOptions options;
+    options.terms = bit(Term::LSE);
+    // A single frame's four balls stand for the one roughly: they are an eighth of its size apart from where they should be.
+    expectIrradiance(gas, lux, options, 0.1);
+    options.frames = 128;
+    options.converge = true;
+    // 512 points; a third of them lie in cells that the ball's surface cuts: 0.3/√512 of noise.
+    expectIrradiance(gas, lux, options, 0.02);
+}
+
 TEST(LightsOnLambert, SpotLightHasTheConeOfTheExtension) {
     expectIrradiance(
         R"({"name": "torch", "light": {"type": "spot", "intensity": 50, "innerConeAngle": 0.2, "outerConeAngle": 0.6}, "translation": [0, 2, 0],
