@@ -18,10 +18,18 @@ dvec3 doubledArea(const MeshInstance& instance, uint32_t triangle) {
     return glm::cross(corner(instance, triangle, 1) - a, corner(instance, triangle, 2) - a);
 }
 
+/// Of a light of this power that fills a box, as seen from a point: softened inside and close by.
+double boxImportance(double power, const Bounds& box, const dvec3& from, double softening2) {
+    const dvec3 nearest = glm::clamp(from, box.minimum, box.maximum), half = 0.5 * box.extent();
+    const double near2 = glm::dot(nearest - from, nearest - from);
+    return power / std::max(near2 + 0.25 * glm::dot(half, half) + softening2, 1e-30);
+}
+
 } // namespace
 
-Lights::Lights(const Scene& scene, const dvec3& origin, SurfaceScene& surfaces)
-    : environment_(scene.environment), surfaces_(surfaces) {
+Lights::Lights(const Scene& scene, const dvec3& origin, SurfaceScene& surfaces,
+               const MediaField& media)
+    : environment_(scene.environment), glow_(media.media()), surfaces_(surfaces) {
     const std::vector<dmat4> world = scene.worldTransforms();
     const std::vector<bool> visible = scene.worldVisibility();
     for (size_t i = 0; i < scene.nodes.size(); ++i) {
@@ -54,19 +62,17 @@ void Lights::collectEmitters(SurfaceScene& surfaces) {
 }
 
 bool Lights::black() const {
-    return lamps_.empty() && !(emitterSums_.back() > 0) && environment_.black();
+    return lamps_.empty() && !(emitterSums_.back() > 0) && environment_.black() && glow_.black();
 }
 
 void Lights::choose(const dvec3& from, bool constantEnvironment, LightChoice& choice) const {
     choice.weights_.assign(count(), 0);
     for (size_t i = 0; i < lamps_.size(); ++i) choice.weights_[i] = lamps_[i].importance(from);
-    if (emitterSums_.back() > 0) {
-        const dvec3 nearest = glm::clamp(from, emitterBounds_.minimum, emitterBounds_.maximum);
-        const dvec3 half = 0.5 * emitterBounds_.extent();
-        const double near2 = glm::dot(nearest - from, nearest - from);
+    if (emitterSums_.back() > 0)
         choice.weights_[trianglesIndex()] =
-            emitterSums_.back() / std::max(near2 + 0.25 * glm::dot(half, half), 1e-30);
-    }
+            boxImportance(emitterSums_.back(), emitterBounds_, from, 0);
+    if (!glow_.black())
+        choice.weights_[glowIndex()] = boxImportance(glow_.intensity(), glow_.bounds(), from, 0);
     if (!environment_.black() && (constantEnvironment || !environment_.constant()))
         choice.weights_[environmentIndex()] = kPi * environment_.meanLuminance();
     double sum = 0;
@@ -93,16 +99,14 @@ void Lights::chooseAlong(const Ray& ray, double length, LightChoice& choice) con
     choice.weights_.assign(count(), 0);
     for (size_t i = 0; i < lamps_.size(); ++i)
         choice.weights_[i] = lamps_[i].importanceAlong(ray, length);
-    if (emitterSums_.back() > 0) {
-        const dvec3 middle = ray.at(0.5 * length),
-                    nearest = glm::clamp(middle, emitterBounds_.minimum, emitterBounds_.maximum);
-        const dvec3 half = 0.5 * emitterBounds_.extent();
+    const dvec3 middle = ray.at(0.5 * length);
+    const double softening2 = 0.25 * length * length;
+    if (emitterSums_.back() > 0)
         choice.weights_[trianglesIndex()] =
-            emitterSums_.back() * length /
-            std::max(glm::dot(nearest - middle, nearest - middle) + 0.25 * glm::dot(half, half) +
-                         0.25 * length * length,
-                     1e-30);
-    }
+            length * boxImportance(emitterSums_.back(), emitterBounds_, middle, softening2);
+    if (!glow_.black())
+        choice.weights_[glowIndex()] =
+            length * boxImportance(glow_.intensity(), glow_.bounds(), middle, softening2);
     if (!environment_.black())
         choice.weights_[environmentIndex()] = kPi * environment_.meanLuminance() * length;
     double sum = 0;
@@ -139,6 +143,8 @@ AimedSample Lights::aim(size_t light, const dvec3& from, double u0, const dvec2&
         result.shadowed = lamps_[light].castsShadows();
     } else if (light == trianglesIndex()) {
         result = aimAtTriangle(from, u0, u);
+    } else if (light == glowIndex()) {
+        result = aimAtGlow(from, u0, u);
     } else {
         const DirectionSample sample = environment_.sample(u);
         result.direction = sample.direction;
@@ -146,6 +152,20 @@ AimedSample Lights::aim(size_t light, const dvec3& from, double u0, const dvec2&
         result.radiance = sample.radiance;
         result.density = sample.density;
     }
+    return result;
+}
+
+AimedSample Lights::aimAtGlow(const dvec3& from, double u0, const dvec2& u) const {
+    AimedSample result;
+    const GlowSample sample = glow_.sample(u0, u);
+    const dvec3 way = sample.position - from;
+    const double squared = glm::dot(way, way);
+    if (!(squared > 0)) return result;
+    result.distance = std::sqrt(squared);
+    result.direction = way / result.distance;
+    result.radiance = sample.emission;
+    result.density = sample.density * squared;
+    result.pointsPerMetre = glow_.pointsPerMetre();
     return result;
 }
 

@@ -1,9 +1,10 @@
 #pragma once
-// All light of a scene but its media's: lamps, glowing triangles, the environment; and which of them to aim at.
+// All light of a scene: lamps, glowing triangles, the environment, glowing media; and which of them to aim at.
 
 #include <vector>
 
 #include "reference/environment_source.h"
+#include "reference/glow_source.h"
 #include "reference/light_source.h"
 #include "reference/surface_scene.h"
 
@@ -13,6 +14,8 @@ namespace tyndall::reference {
 struct AimedSample : LightSample {
     bool delta = false;   // no ray meets it by chance
     bool shadowed = true; // surfaces block it
+    /// Of glowing media: radiance is per metre, density per steradian and metre, and a ray that passes meets so many points a metre.
+    double pointsPerMetre = 1;
     bool valid() const { return density > 0 && maximumOf(radiance) > 0; }
 };
 
@@ -34,14 +37,17 @@ private:
 
 class Lights {
 public:
-    /// Marks the instances' emitting triangles in `surfaces`. `origin` as in SurfaceScene::build.
-    Lights(const Scene& scene, const dvec3& origin, SurfaceScene& surfaces);
+    /// Marks the instances' emitting triangles in `surfaces`; it and `media` must outlive this. `origin` as in SurfaceScene::build.
+    Lights(const Scene& scene, const dvec3& origin, SurfaceScene& surfaces,
+           const MediaField& media);
 
-    /// Lamps first, then the glowing triangles as one, then the environment.
-    [[nodiscard]] size_t count() const { return lamps_.size() + 2; }
+    /// Lamps first, then the glowing triangles as one, then the environment, then all glowing media as one.
+    [[nodiscard]] size_t count() const { return lamps_.size() + 3; }
     [[nodiscard]] const std::vector<LightSource>& lamps() const { return lamps_; }
     [[nodiscard]] size_t trianglesIndex() const { return lamps_.size(); }
     [[nodiscard]] size_t environmentIndex() const { return lamps_.size() + 1; }
+    [[nodiscard]] size_t glowIndex() const { return lamps_.size() + 2; }
+    [[nodiscard]] const GlowSource& glow() const { return glow_; }
     [[nodiscard]] const EnvironmentSource& environment() const { return environment_; }
     [[nodiscard]] bool black() const;
     [[nodiscard]] size_t emittingTriangles() const { return emitters_.size(); }
@@ -63,10 +69,12 @@ private:
         uint32_t instance, triangle;
     };
     void collectEmitters(SurfaceScene& surfaces);
+    [[nodiscard]] AimedSample aimAtGlow(const dvec3& from, double u0, const dvec2& u) const;
     [[nodiscard]] AimedSample aimAtTriangle(const dvec3& from, double u0, const dvec2& u) const;
 
     std::vector<LightSource> lamps_;
     EnvironmentSource environment_;
+    GlowSource glow_;
     const SurfaceScene& surfaces_;
     std::vector<Emitter> emitters_;
     std::vector<double> emitterSums_{0}; // cumulative power, emitters + 1

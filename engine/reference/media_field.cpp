@@ -17,6 +17,12 @@ dmat4 inverseOf(const dmat4& m) {
     return glm::determinant(dmat3(m)) != 0 ? glm::inverse(m) : dmat4(0.0);
 }
 
+/// Planck's law summed over wavelengths is slow; between entries this close it is straight to 10⁻⁷.
+const BlackbodyTable& blackbody() {
+    static const BlackbodyTable table = makeBlackbodyTable(16384);
+    return table;
+}
+
 bool usable(const Medium& medium, const dmat4& rayFromNode) {
     if (medium.extinction() == vec3(0) && medium.emission == vec3(0) &&
         !(medium.temperatureScale > 0))
@@ -167,7 +173,7 @@ dvec3 MediumSource::emitted(const dvec3& position, double density) const {
         const double kelvin = temperature_->sample(dvec3(temperatureFromRay_ * dvec4(position, 1)));
         if (kelvin > BlackbodyTable::kCoolest)
             result += temperatureScale_ * density *
-                      blackbodyRadiance(std::min(kelvin, BlackbodyTable::kHottest));
+                      blackbody().radiance(std::min(kelvin, BlackbodyTable::kHottest));
     }
     return result;
 }

@@ -53,10 +53,15 @@ public:
     [[nodiscard]] double densestBound() const { return grid_ ? double(grid_->maximum) : 1; }
     /// Unbounded above and to the sides, with density 1 at most: Height.
     [[nodiscard]] bool isHeight() const { return kind_ == MediumKind::Height; }
+    /// There is always more of it.
+    [[nodiscard]] bool endless() const {
+        return kind_ == MediumKind::Everywhere || kind_ == MediumKind::Height;
+    }
     [[nodiscard]] bool isGrid() const { return kind_ == MediumKind::Grid; }
 
 private:
     friend class MediumWalk;
+    friend class GlowSource;
     void makeBrickBounds();
     [[nodiscard]] double gridIntegral(const dvec3& origin, const dvec3& direction,
                                       Interval interval) const;

@@ -130,7 +130,8 @@ void MediaSegment::densitiesAt(const SegmentPiece& piece, double t, MediumPoint&
 }
 
 MediaSegment::Flight MediaSegment::fly(Sampler& sampler, PathWeights& weights, MediumPoint& point,
-                                       dvec3& emitted) {
+                                       std::vector<EmittedLight>& emitted) {
+    emitted.clear();
     const bool grey = media_.grey();
     const int hero = weights.hero;
     double depth =
@@ -161,8 +162,8 @@ MediaSegment::Flight MediaSegment::fly(Sampler& sampler, PathWeights& weights, M
             dvec3 emission;
             densitiesAt(piece, t, point, emission);
             if (emission != dvec3(0))
-                emitted += weights.throughput * (emission / rate) /
-                           meanOf(weights.ratio * piece.majorant / rate);
+                emitted.push_back({ray_.at(t), weights.throughput * (emission / rate) /
+                                                   meanOf(weights.ratio * piece.majorant / rate)});
             // Rounding may take a density over its bound by some 10⁻¹⁶ of it.
             const dvec3 empty = glm::max(piece.majorant - point.extinction, dvec3(0));
             const double real = point.extinction[hero] / (point.extinction[hero] + empty[hero]);

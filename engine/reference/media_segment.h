@@ -62,6 +62,12 @@ struct SegmentPiece {
     uint32_t firstPart = 0, partCount = 0;
 };
 
+/// Glow met on the way, as carried.
+struct EmittedLight {
+    dvec3 position{0};
+    dvec3 light{0};
+};
+
 class MediaSegment {
 public:
     explicit MediaSegment(const MediaField& media) : media_(media) {}
@@ -73,9 +79,10 @@ public:
         bool collided = false;
         double distance = 0;
     };
-    /// Flies until the first real collision or the end, null collisions included. `emitted` grows by what glows on the way, as carried.
+    /// Flies until the first real collision or the end, null collisions included. `emitted` becomes what glows on the way.
     /// At a collision `point` holds the media there, and the weights include their scattering.
-    Flight fly(Sampler& sampler, PathWeights& weights, MediumPoint& point, dvec3& emitted);
+    Flight fly(Sampler& sampler, PathWeights& weights, MediumPoint& point,
+               std::vector<EmittedLight>& emitted);
 
     /// Draws a distance where free flight would often collide, given that it does, up to a depth of kDeepest.
     struct Draw {

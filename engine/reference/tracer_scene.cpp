@@ -7,8 +7,8 @@ Result<TracerScene> TracerScene::build(const Scene& scene, const dvec3& origin, 
     auto surfaces = SurfaceScene::build(scene, origin, threads);
     if (!surfaces.ok()) return surfaces.error();
     result.surfaces = std::move(*surfaces);
-    result.lights = std::make_unique<Lights>(scene, origin, *result.surfaces);
     result.media = std::make_unique<MediaField>(scene, origin);
+    result.lights = std::make_unique<Lights>(scene, origin, *result.surfaces, *result.media);
     return result;
 }
 

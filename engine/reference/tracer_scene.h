@@ -27,8 +27,8 @@ struct TermLight {
 /// The scene must outlive it.
 struct TracerScene {
     std::unique_ptr<SurfaceScene> surfaces;
-    std::unique_ptr<Lights> lights;
     std::unique_ptr<MediaField> media;
+    std::unique_ptr<Lights> lights; // keeps references to both
     /// Errors: as SurfaceScene::build.
     static Result<TracerScene> build(const Scene& scene, const dvec3& origin, int threads);
     [[nodiscard]] std::vector<std::string> notes() const;
@@ -36,7 +36,7 @@ struct TracerScene {
 
 struct PathSettings {
     TermSet terms = kAllTerms;
-    int maxScatterings = -1; // -1: any number
+    int maxScatterings = -1;                                    // -1: any number
     TransmittanceMode transmittance = TransmittanceMode::Ratio; // the better one at equal time
     bool aimAtLights = true; // next-event estimation; without it lights without extent stay dark
     bool aimFromSegments = true; // also from points drawn for it along each piece of a path

@@ -69,10 +69,9 @@ void VolumePathTracer::trace(const CameraRays::CameraRay& start, Sampler& sample
         if (hasMedia) {
             segment_.start(ray, hit.distance);
             if (!last) aimFromSegment(ray);
-            dvec3 emitted(0);
             if (!origin_.camera) meetLamps(ray, hit.distance);
-            flight = segment_.fly(sampler, weights_, point_, emitted);
-            if (emitted != dvec3(0)) see(history_.term(), emitted);
+            flight = segment_.fly(sampler, weights_, point_, emitted_);
+            meetGlow();
         } else if (!origin_.camera) {
             meetLamps(ray, hit.distance);
         }
@@ -157,7 +156,7 @@ void VolumePathTracer::aimFromSurface(const SurfacePoint& point, const Bsdf& bsd
     const dvec3 reflected = bsdf.evaluate(aimed.direction);
     if (!(maximumOf(reflected) > 0)) return;
     const double density = aimed.density * fromPoint_.chance(light);
-    const double met = aimed.delta ? 0 : bsdf.density(aimed.direction);
+    const double met = aimed.delta ? 0 : bsdf.density(aimed.direction) * aimed.pointsPerMetre;
     const dvec3 light3 = arriving(way, shadow);
     see(history_.term(), weights_.carried() * reflected * light3 / (density + met));
 }
@@ -202,7 +201,7 @@ void VolumePathTracer::aimFromCollision(const dvec3& position, const dvec3& befo
     const dvec3 phase = point_.phase(before, aimed.direction);
     const double density = aimed.density * fromPoint_.chance(light);
     double met = 0;
-    if (!aimed.delta) met = meanOf(phase);
+    if (!aimed.delta) met = meanOf(phase) * aimed.pointsPerMetre;
     double drawn = 0; // by aimFromSegment, in units of flightDensity
     if (origin_.aimedFromSegment > 0 && origin_.flightDensity > 0)
         drawn = aimed.density * origin_.aimedFromSegment * fromSegment_.chance(light) *
@@ -284,7 +283,7 @@ void VolumePathTracer::aimFromSegment(const Ray& ray) {
         aimed = scene_.lights->aim(light, position, u, w);
         if (!aimed.valid()) return;
         phase = aimedPoint_.phase(ray.direction, aimed.direction);
-        met = aimed.delta ? 0 : meanOf(phase);
+        met = aimed.delta ? 0 : meanOf(phase) * aimed.pointsPerMetre;
         scene_.lights->choose(position, false, fromCollision_);
         collided = aimed.density * fromCollision_.chance(light);
     }
@@ -312,8 +311,8 @@ double VolumePathTracer::aimedDensity(size_t light, double density) const {
 }
 
 /// The share of the light met that this way of finding it stands for.
-double VolumePathTracer::meetingWeight(size_t light, double density) const {
-    const double own = origin_.directionDensity * origin_.flightDensity;
+double VolumePathTracer::meetingWeight(size_t light, double density, double pointsPerMetre) const {
+    const double own = origin_.directionDensity * origin_.flightDensity * pointsPerMetre;
     const double aimed = aimedDensity(light, density);
     if (!(aimed > 0)) return 1;
     return own > 0 ? own / (own + aimed) : 0;
@@ -345,6 +344,22 @@ void VolumePathTracer::meetEnvironment(const Ray& ray) {
             weight = meetingWeight(scene_.lights->environmentIndex(), density);
     }
     see(history_.term(), weights_.carried() * environment.radiance(ray.direction) * weight);
+}
+
+void VolumePathTracer::meetGlow() {
+    const GlowSource& glow = scene_.lights->glow();
+    dvec3 sum(0);
+    for (const EmittedLight& emitted : emitted_) {
+        double weight = 1;
+        if (!origin_.camera && !glow.black()) {
+            const dvec3 way = emitted.position - origin_.position;
+            weight = meetingWeight(scene_.lights->glowIndex(),
+                                   glow.density(emitted.position) * glm::dot(way, way),
+                                   glow.pointsPerMetre());
+        }
+        sum += weight * emitted.light;
+    }
+    if (sum != dvec3(0)) see(history_.term(), sum);
 }
 
 void VolumePathTracer::meetEmitter(const SurfacePoint& point) {

@@ -50,10 +50,12 @@ private:
     void aimFromSegment(const Ray& ray);
     void meetLamps(const Ray& ray, double end);
     void meetEnvironment(const Ray& ray);
+    void meetGlow(); // of what the last flight met
     void meetEmitter(const SurfacePoint& point);
     /// Of the origin's ways to aim at `light`, in the measure of directionDensity times flightDensity.
     [[nodiscard]] double aimedDensity(size_t light, double density) const;
-    [[nodiscard]] double meetingWeight(size_t light, double density) const;
+    [[nodiscard]] double meetingWeight(size_t light, double density,
+                                       double pointsPerMetre = 1) const;
     [[nodiscard]] double distanceDensity(size_t light, const Ray& ray, Interval reach, double t,
                                          double collisionDensity) const;
     [[nodiscard]] dvec3 arriving(const AimedSample& aimed, const Ray& ray);
@@ -74,6 +76,7 @@ private:
     Origin origin_;
     MediaSegment segment_;
     MediumPoint point_, aimedPoint_;
+    std::vector<EmittedLight> emitted_;
     LightChoice fromPoint_, fromSegment_; // of the origin
     LightChoice alongSegment_;            // of the present segment
     LightChoice fromCollision_;           // as if there were a collision where a light is aimed at

@@ -7,7 +7,7 @@
 namespace tyndall::validation {
 namespace {
 
-enum class Lamp { Ball = 0, Rect = 1, Sun = 2, Sky = 3, Triangles = 4, Spot = 5 };
+enum class Lamp { Ball = 0, Rect = 1, Sun = 2, Sky = 3, Triangles = 4, Spot = 5, Flame = 6 };
 
 void addLamp(SceneMaker& maker, Lamp lamp) {
     Light light;
@@ -40,6 +40,22 @@ void addLamp(SceneMaker& maker, Lamp lamp) {
             image->pixels[i] = i / 3 == 10 ? 6.0f : 0.2f + 0.05f * float(i % 7);
         maker.scene().environment.image = image;
         maker.scene().environment.rotation = 0.7f;
+        return;
+    }
+    case Lamp::Flame: { // hot lumps, and a ball of gas over part of them
+        Medium flame = matter(MediumKind::Grid, 0.3, 0);
+        flame.density = lumpyGrid(1.5, 3, 77);
+        std::vector<float> heat;
+        for (int i = 0; i < 9 * 9 * 9; ++i) heat.push_back(float(1100 + 90 * (i / 9 % 9)));
+        flame.temperature = std::make_shared<BrickGrid>(
+            makeBrickGrid(heat, ivec3(-4), ivec3(9), glm::scale(dmat4(1.0), dvec3(0.25))));
+        flame.temperatureScale = 0.01f;
+        maker.addMedium(flame, {0.7, 0.5, 0.2});
+        Medium gas;
+        gas.kind = MediumKind::Sphere;
+        gas.size = dvec3(0.6);
+        gas.emission = {1, 2, 3};
+        maker.addMedium(gas, {0.2, 0.6, 0.1});
         return;
     }
     case Lamp::Triangles: {
@@ -92,8 +108,38 @@ INSTANTIATE_TEST_SUITE_P(Lamps, ReferenceAiming,
                                            std::pair(Lamp::Rect, "rect"),
                                            std::pair(Lamp::Sun, "sun"), std::pair(Lamp::Sky, "sky"),
                                            std::pair(Lamp::Triangles, "triangles"),
-                                           std::pair(Lamp::Spot, "spot")),
+                                           std::pair(Lamp::Spot, "spot"),
+                                           std::pair(Lamp::Flame, "flame")),
                          [](const auto& about) { return std::string(about.param.second); });
+
+/// What a clear ball of even glow sends past a point outside follows Newton's shell theorem: as if all of it came from the middle.
+TEST(ReferenceLaws, AGlowingBallOfGasLightsAFloorAsFromItsMiddle) {
+    SceneMaker maker;
+    Medium gas;
+    gas.kind = MediumKind::Sphere;
+    gas.size = dvec3(1.6);
+    gas.emission = vec3(5);
+    maker.addMedium(gas, {0.3, 0.2, -0.4});
+    maker.addPrimitive(PrimitiveShape::Plane, {5, 1, 5}, matt(vec3(0.5f)),
+                       lookAlong({0, 0, -1}, {0, -1, 0}));
+    const auto stage = Stage::make(maker.take());
+    reference::PathSettings lit;
+    lit.terms = bit(Term::LSE);
+    for (const double x : {0.3, 1.1, -1.9}) {
+        const dvec3 to(x, -1, 0.5), d = dvec3(0.3, 0.2, -0.4) - to;
+        const double intensity = 5 * 4.0 / 3 * kPi * std::pow(0.8, 3);
+        const double expected = 0.5 / kPi * intensity * d.y / std::pow(glm::dot(d, d), 1.5);
+        Effort effort;
+        effort.segments = 2e5;
+        const Estimate light = measure(gaze(stage, {0.2, 2.5, 4}, to, 0, 1, lit), effort,
+                                       reference::mixBits(900 + uint64_t(10 * (x + 2))));
+        const double t = (light.value - expected) / light.error;
+        std::printf("at %g m: %.6g ± %.1g where %.6g is right, t %+.2f\n", x, light.value,
+                    light.error, expected, t);
+        EXPECT_LE(std::abs(t), kLargestT);
+        EXPECT_LT(light.error, 0.005 * expected) << "too coarse to tell anything";
+    }
+}
 
 // The shadow ray starts off the floor by a margin that grows with the floor: it must not end behind the box's face.
 TEST(ReferenceLaws, AGlowingBoxLightsAWideFloorByAimingAsMuchAsByChance) {

@@ -109,7 +109,7 @@ TEST_P(SegmentDraws, FlightsCollideAsOftenAsTheTransmittanceSays) {
         Sampler sampler(24, uint64_t(GetParam()), i);
         reference::PathWeights weights;
         weights.hero = int(sampler.bits() % 3);
-        dvec3 emitted(0);
+        std::vector<reference::EmittedLight> emitted;
         segment.start(ray, 4);
         if (!segment.fly(sampler, weights, point, emitted).collided)
             passed += weights.carried() / double(kFlights);

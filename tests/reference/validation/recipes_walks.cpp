@@ -23,7 +23,7 @@ public:
 
     /// Flies as far as `length`: did it collide before? It then stands at the collision, not yet turned.
     bool fly(double length) {
-        dvec3 emitted(0);
+        std::vector<reference::EmittedLight> emitted;
         segment_.start(ray_, length);
         const MediaSegment::Flight flight = segment_.fly(sampler_, weights_, point_, emitted);
         travelled_ += flight.distance;
