@@ -37,7 +37,6 @@ public:
     /// At a place in space, from which equiangular sampling can see it; false for light from infinity.
     [[nodiscard]] bool local() const { return type_ != LightType::Directional; }
     [[nodiscard]] const dvec3& centre() const { return centre_; }
-    [[nodiscard]] double extent() const { return extent_; } // metres, from the centre
 
 private:
     [[nodiscard]] dvec3 fading(const dvec3& travel, double distance) const;

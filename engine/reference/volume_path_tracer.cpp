@@ -225,36 +225,66 @@ double VolumePathTracer::distanceDensity(size_t light, const Ray& ray, Interval 
     return equiangularDensity(t - reach.begin, nearest, height, reach.end - reach.begin);
 }
 
-void VolumePathTracer::aimFromSegment(const Ray& ray) {
-    if (!settings_.aimFromSegments || !settings_.aimAtLights || !scene_.media->scatters()) return;
+/// Whether this path aims at a light from its present segment; sets reach_, alongSegment_ and aimChance_.
+bool VolumePathTracer::decideToAimFromSegment(const Ray& ray) {
+    if (!settings_.aimFromSegments || !settings_.aimAtLights || !scene_.media->scatters())
+        return false;
     reach_ = segment_.reach();
-    if (reach_.empty() || !std::isfinite(reach_.end)) return;
+    if (reach_.empty() || !std::isfinite(reach_.end)) return false;
     scene_.lights->chooseAlong({ray.at(reach_.begin), ray.direction}, reach_.end - reach_.begin,
                                alongSegment_);
-    if (alongSegment_.empty()) return;
-    const double likely =
-        history_.count() == 0
-            ? 1
-            : std::clamp(2 * segment_.collisionChance() * maximumOf(weights_.carried()),
-                         kLeastAimChance, 1.0);
-    aimChance_ = likely;
-    if (likely < 1 && !(sampler_->random() < likely)) return;
+    if (alongSegment_.empty()) return false;
+    aimChance_ = history_.count() == 0
+                     ? 1
+                     : std::clamp(2 * segment_.collisionChance() * maximumOf(weights_.carried()),
+                                  kLeastAimChance, 1.0);
+    return aimChance_ == 1 || sampler_->random() < aimChance_;
+}
 
+/// Where along the segment that light is aimed at from; distanceDensity() knows how likely.
+double VolumePathTracer::placeToAimFrom(size_t light, const Ray& ray, double u) {
+    const auto& lamps = scene_.lights->lamps();
+    if (light >= lamps.size() || !lamps[light].local()) return segment_.drawCollision(u).distance;
+    const dvec3 start = ray.at(reach_.begin);
+    const double nearest = glm::dot(lamps[light].centre() - start, ray.direction);
+    const double height = glm::length(lamps[light].centre() - start - nearest * ray.direction);
+    return reach_.begin + sampleEquiangular(u, nearest, height, reach_.end - reach_.begin).distance;
+}
+
+/// Aims at a light from a point of the segment at which aimedPoint_ is.
+VolumePathTracer::AimFromMedium VolumePathTracer::aimFrom(const dvec3& position, const Ray& ray,
+                                                          size_t light, double u, const dvec2& w) {
+    AimFromMedium result;
+    AimedSample& aimed = result.aimed;
+    const EnvironmentSource& environment = scene_.lights->environment();
+    if (light == scene_.lights->environmentIndex() && environment.constant()) {
+        // Light from all around: the phase function is the best to draw from.
+        aimed.direction = aimedPoint_.samplePhase(weights_.hero, ray.direction, u, w);
+        result.phase = aimedPoint_.phase(ray.direction, aimed.direction);
+        aimed.distance = kInfinity;
+        aimed.radiance = environment.radiance(aimed.direction);
+        aimed.density = result.met = meanOf(result.phase);
+        // The hero draws it; all heroes together, as likely as their channels' paths, draw it with this density.
+        result.drawnAs =
+            meanOf(weights_.ratio * result.phase) / (meanOf(weights_.ratio) * result.met);
+        return result;
+    }
+    aimed = scene_.lights->aim(light, position, u, w);
+    if (!aimed.valid()) return result;
+    result.phase = aimedPoint_.phase(ray.direction, aimed.direction);
+    result.met = aimed.delta ? 0 : meanOf(result.phase) * aimed.pointsPerMetre;
+    scene_.lights->choose(position, false, fromCollision_);
+    result.collided = aimed.density * fromCollision_.chance(light);
+    return result;
+}
+
+void VolumePathTracer::aimFromSegment(const Ray& ray) {
+    if (!decideToAimFromSegment(ray)) return;
     double u = sampler_->next1();
     const double v = sampler_->next1();
     const dvec2 w = sampler_->next2();
     const size_t light = Lights::pick(alongSegment_, u);
-    const auto& lamps = scene_.lights->lamps();
-    double t = 0;
-    if (light < lamps.size() && lamps[light].local()) {
-        const dvec3 start = ray.at(reach_.begin);
-        const double nearest = glm::dot(lamps[light].centre() - start, ray.direction);
-        const double height = glm::length(lamps[light].centre() - start - nearest * ray.direction);
-        t = reach_.begin +
-            sampleEquiangular(v, nearest, height, reach_.end - reach_.begin).distance;
-    } else {
-        t = segment_.drawCollision(v).distance;
-    }
+    const double t = placeToAimFrom(light, ray, v);
     const double distance = distanceDensity(light, ray, reach_, t, segment_.collisionDensity(t));
     if (!(distance > 0)) return;
     const dvec3 position = ray.at(t);
@@ -262,39 +292,15 @@ void VolumePathTracer::aimFromSegment(const Ray& ray) {
     for (const MediumSource& medium : scene_.media->media())
         aimedPoint_.add(medium, medium.density(position));
     if (aimedPoint_.scattering == dvec3(0)) return;
-
-    AimedSample aimed;
-    dvec3 phase;
-    double
-        met; // the density of a collision there that then meets the light, over that of the collision
-    double collided = 0; // of aimFromCollision, likewise
-    double drawnAs = 1;  // true density of the direction drawn, over the one it is weighed by
-    const bool even =
-        light == scene_.lights->environmentIndex() && scene_.lights->environment().constant();
-    if (even) { // light from all around: the phase function is the best to draw from
-        aimed.direction = aimedPoint_.samplePhase(weights_.hero, ray.direction, u, w);
-        phase = aimedPoint_.phase(ray.direction, aimed.direction);
-        aimed.distance = kInfinity;
-        aimed.radiance = scene_.lights->environment().radiance(aimed.direction);
-        aimed.density = met = meanOf(phase);
-        // The hero draws it; all heroes together, as likely as their channels' paths, draw it with this density.
-        drawnAs = meanOf(weights_.ratio * phase) / (meanOf(weights_.ratio) * met);
-    } else {
-        aimed = scene_.lights->aim(light, position, u, w);
-        if (!aimed.valid()) return;
-        phase = aimedPoint_.phase(ray.direction, aimed.direction);
-        met = aimed.delta ? 0 : meanOf(phase) * aimed.pointsPerMetre;
-        scene_.lights->choose(position, false, fromCollision_);
-        collided = aimed.density * fromCollision_.chance(light);
-    }
-    if (!aimed.valid()) return;
-    const double density = aimed.density * distance * likely * alongSegment_.chance(light);
-    const double others = segment_.flightDensity(t) * (met + collided);
+    const AimFromMedium way = aimFrom(position, ray, light, u, w);
+    if (!way.aimed.valid()) return;
+    const double density = way.aimed.density * distance * aimChance_ * alongSegment_.chance(light);
+    const double others = segment_.flightDensity(t) * (way.met + way.collided);
     const dvec3 toHere = transmittance(*scene_.media, ray, t, settings_.transmittance, *sampler_);
-    const dvec3 light3 = arriving(aimed, {position, aimed.direction});
+    const dvec3 light3 = arriving(way.aimed, {position, way.aimed.direction});
     see(history_.termAfter(Scattering::Medium), weights_.carried() * toHere *
-                                                    aimedPoint_.scattering * phase * light3 /
-                                                    ((density + others) * drawnAs));
+                                                    aimedPoint_.scattering * way.phase * light3 /
+                                                    ((density + others) * way.drawnAs));
 }
 
 // --- Light met by chance.

@@ -45,9 +45,22 @@ private:
         double aimedFromSegment = 0; // chance that aimFromSegment was called
         double collisionDensity = 0;
     };
+    /// A light aimed at from a point of a segment, and how else it might have been found. Densities per steradian.
+    struct AimFromMedium {
+        AimedSample aimed;
+        dvec3 phase{0};
+        double met =
+            0; // of a collision there that then meets the light, over that of the collision
+        double collided = 0; // of a collision there that aims at it, likewise
+        double drawnAs = 1;  // true density of the direction drawn, over the one it is weighed by
+    };
     void aimFromSurface(const SurfacePoint& point, const Bsdf& bsdf);
     void aimFromCollision(const dvec3& position, const dvec3& before);
     void aimFromSegment(const Ray& ray);
+    bool decideToAimFromSegment(const Ray& ray);
+    [[nodiscard]] double placeToAimFrom(size_t light, const Ray& ray, double u);
+    [[nodiscard]] AimFromMedium aimFrom(const dvec3& position, const Ray& ray, size_t light,
+                                        double u, const dvec2& w);
     void meetLamps(const Ray& ray, double end);
     void meetEnvironment(const Ray& ray);
     void meetGlow(); // of what the last flight met
