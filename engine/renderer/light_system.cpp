@@ -31,41 +31,51 @@ uint32_t shaderType(LightType type) {
     return gpu::kLightPoint;
 }
 
-/// The light of this frame as a low-discrepancy point of the unit square: every light has its own sequence. A ball takes each
-/// point for two frames, see setSamplePoint.
-dvec2 framePoint(const gpu::ViewData& view, const gpu::LightData& light, uint32_t node) {
-    const bool ball = light.type != gpu::kLightRect && light.type != gpu::kLightDirectional;
-    return lowDiscrepancyPoint(ball ? view.frameIndex / 2 : view.frameIndex,
-                               fg::mixHash(uint64_t(view.seed) + 31, node));
+/// Where on the light this frame samples it; every light has its own sequence.
+struct FrameSequence {
+    uint32_t frame;
+    uint64_t key;
+};
+
+/// A point in the unit ball whose density goes with 1/√(1 - r²). Seen along any line, as much of it lies in front as behind any other: point
+/// lights so spread shine as a Lambertian ball does, evenly over its disc, and each gives a receiver nearly what all give together, where
+/// points on the ball's surface would go with their cosine. The first three coordinates of a unit vector in four dimensions are so spread;
+/// its uniform distribution is Shoemake's (1992, "Uniform random rotations").
+dvec3 pointInBall(const FrameSequence& sequence) {
+    const dvec2 a = lowDiscrepancyPoint(sequence.frame, sequence.key),
+                b = lowDiscrepancyPoint(sequence.frame, fg::mixHash(sequence.key, 1));
+    const double s = std::sqrt(1.0 - a.x), c = std::sqrt(a.x), p = 2.0 * kPi * a.y,
+                 q = 2.0 * kPi * b.x;
+    return {s * std::sin(p), s * std::cos(p), c * std::sin(q)};
 }
 
-/// A point on the light that stands for all of it in this frame; see light.glsl for the weights. A ball's points come in opposite pairs:
-/// one of the two is turned towards any receiver, so that the light on it hardly varies from pair to pair.
-void setSamplePoint(gpu::LightData& light, const dvec2& u, bool opposite) {
+/// A direction in which a sun with a disc travels, uniform by solid angle.
+dvec3 sunDirection(const gpu::LightData& light, const FrameSequence& sequence) {
+    const dvec2 u = lowDiscrepancyPoint(sequence.frame, sequence.key);
+    const double z = 1.0 - u.x * (1.0 - std::cos(double(light.direction.w))),
+                 s = std::sqrt(std::max(0.0, 1.0 - z * z)), azimuth = 2.0 * kPi * u.y;
+    const dvec3 axis(light.direction);
+    const dvec3 x =
+        glm::normalize(glm::cross(axis, std::abs(axis.y) < 0.9 ? dvec3(0, 1, 0) : dvec3(1, 0, 0)));
+    const dvec3 y = glm::cross(axis, x);
+    return glm::normalize(x * (s * std::cos(azimuth)) + y * (s * std::sin(azimuth)) + axis * z);
+}
+
+/// A point on the light that stands for all of it in this frame; see light.glsl for the weights.
+void setSamplePoint(gpu::LightData& light, const FrameSequence& sequence) {
     const double radius = double(light.direction.w);
     if (light.type == gpu::kLightRect) {
+        const dvec2 u = lowDiscrepancyPoint(sequence.frame, sequence.key);
         const dvec3 point = dvec3(light.position) + (2.0 * u.x - 1.0) * dvec3(light.axisX) +
                             (2.0 * u.y - 1.0) * dvec3(light.axisY);
         light.samplePoint = vec4(vec3(point), 1.0f);
-    } else if (radius > 0) {
-        // Uniform over the ball's surface; over the sun's disc, by solid angle.
-        const bool sun = light.type == gpu::kLightDirectional;
-        const double lowest = sun ? std::cos(radius) : -1.0;
-        const double z = 1.0 - u.x * (1.0 - lowest), s = std::sqrt(std::max(0.0, 1.0 - z * z)),
-                     azimuth = 2.0 * kPi * u.y;
-        dvec3 axis = dvec3(light.direction);
-        if (glm::length(axis) < 0.5) axis = dvec3(0, 0, -1);
-        const dvec3 x = glm::normalize(
-            glm::cross(axis, std::abs(axis.y) < 0.9 ? dvec3(0, 1, 0) : dvec3(1, 0, 0)));
-        const dvec3 y = glm::cross(axis, x);
-        const dvec3 direction =
-            glm::normalize(x * (s * std::cos(azimuth)) + y * (s * std::sin(azimuth)) + axis * z);
-        light.samplePoint =
-            vec4(vec3(sun ? direction
-                          : dvec3(light.position) + (opposite ? -radius : radius) * direction),
-                 1.0f);
+    } else if (radius > 0 && light.type == gpu::kLightDirectional) {
+        light.samplePoint = vec4(vec3(sunDirection(light, sequence)), 1.0f);
         // A disc of constant radiance gives E on a surface that faces its centre: its mean is 2E/(1 + cos) by solid angle.
-        if (sun) light.intensity *= vec4(vec3(float(2.0 / (1.0 + lowest))), 1.0f);
+        light.intensity *= vec4(vec3(float(2.0 / (1.0 + std::cos(radius)))), 1.0f);
+    } else if (radius > 0) {
+        light.samplePoint =
+            vec4(vec3(dvec3(light.position) + radius * pointInBall(sequence)), 1.0f);
     }
 }
 
@@ -313,8 +323,9 @@ void LightSystem::update(const LightFrame& frame) {
         gpu::LightData data = c.data;
         // Numbered by node, so that a light keeps its sequence when others come and go.
         if (converge)
-            setSamplePoint(data, framePoint(frame.view->data, data, uint32_t(c.node)),
-                           frame.view->data.frameIndex % 2 == 1);
+            setSamplePoint(data, {frame.view->data.frameIndex,
+                                  fg::mixHash(uint64_t(frame.view->data.seed) + 31,
+                                              uint64_t(uint32_t(c.node)))});
         lights_.push_back(data);
         nodes_.push_back(c.node);
         if (c.reach <= 0)

@@ -34,20 +34,19 @@ LightSample sampleDirectional(uint light) {
 }
 
 /// Point and spot. A radius makes it a Lambertian ball of the same intensity: seen whole, it sends I/d² to a facing surface,
-/// d from its centre. Where a point on the ball is given, that point alone stands for all of it, as if spread evenly over the
-/// ball's area: 4·I·cosθ/d², d from that point, whose mean over the ball is the same.
+/// d from its centre. Where a point in the ball is given, that point alone stands for all of it; over many frames the points
+/// are spread so that together they are the ball (pointInBall in light_system.cpp).
 LightSample samplePunctual(uint light, vec3 position) {
-    bool onBall = lights[light].samplePoint.w > 0.0;
+    bool sampled = lights[light].samplePoint.w > 0.0;
     float radius = lights[light].direction.w;
-    vec3 from = onBall ? lights[light].samplePoint.xyz : lights[light].position.xyz;
+    vec3 from = sampled ? lights[light].samplePoint.xyz : lights[light].position.xyz;
     vec3 toLight = from - position;
     float distance = length(toLight);
     float nearest = lights[light].intensity.w; // a tiny fraction of the scene
     vec3 direction = distance > 0.0 ? toLight / distance : -lights[light].direction.xyz;
     // Inside the ball no more light arrives than on its surface.
-    float counted = max(distance, onBall ? nearest : max(nearest, radius));
+    float counted = max(distance, sampled ? nearest : max(nearest, radius));
     float factor = rangeWindow(lights[light].position.w, distance) / (counted * counted);
-    if (onBall) factor *= 4.0 * max(0.0, dot(from - lights[light].position.xyz, -direction) / radius);
     if (lights[light].type == kLightSpot) factor *= coneAttenuation(light, -direction);
     return LightSample(direction, distance, lights[light].intensity.rgb * factor);
 }

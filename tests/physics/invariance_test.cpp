@@ -4,6 +4,8 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include "scene/scene_file.h"
+#include "support/content.h"
 #include "support/render.h"
 
 namespace tyndall::test {
@@ -195,6 +197,25 @@ TEST(Skips, PoisonedResourcesNeverReachThePicture) {
         const Rendered poison = renderer.render(testScene(1, media), options()); // fails on any NaN
         EXPECT_EQ(clean.beauty.pixels, poison.beauty.pixels);
     }
+}
+
+// Light gathered at every cell, through every cell on its way, is a great many rounds of loops. Some drivers end all loops of a shader
+// after so many (llvmpipe: 65,535): the rest of the ray would be missing from the emission, too.
+TEST(Invariance, EmissionIsTheSameWhetherLightIsGatheredOrNot) {
+    Result<LoadedScene> loaded = loadScene(sourceDir() / "content/campfire.scene.json");
+    ASSERT_TRUE(loaded.ok()) << loaded.message();
+    RenderOptions o;
+    o.width = 32;
+    o.height = 18;
+    o.frames = 2;
+    o.converge = true;
+    o.terms = bit(Term::LE);
+    const Image alone = sharedRenderer().render(loaded->scene, o).terms.at("LE");
+    o.terms = terms(Term::LE, Term::LVE);
+    const Image beside = sharedRenderer().render(loaded->scene, o).terms.at("LE");
+    EXPECT_GT(mean(alone), 0);
+    // Two shaders may round differently.
+    EXPECT_LE(relmse(beside, alone), 1e-10);
 }
 
 TEST(Determinism, TheSameFrameTwiceIsTheSameBits) {

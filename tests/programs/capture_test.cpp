@@ -172,6 +172,22 @@ TEST_F(CaptureTest, TermsThatAreNotAskedForAreNotRendered) {
         EXPECT_TRUE(layer.name.empty() || layer.name == "LSE") << layer.name;
 }
 
+// Emission alone: no light is gathered, and the shaders must do without the lights' buffers; no shadow falls on anything.
+TEST_F(CaptureTest, AFlameIsSeenWithoutAnyOtherTerm) {
+    const ProcessResult result =
+        capture({(sourceDir() / "content/campfire.scene.json").string(), "-o", "a.exr", "--size",
+                 "64x36", "--terms", "LE", "--aov", "terms", "--report", "r.json"});
+    ASSERT_EQ(result.status, 0) << result.err;
+    float brightest = 0;
+    for (const float value : exr("a.exr").layers[0].image.pixels)
+        brightest = std::max(brightest, value);
+    EXPECT_GT(brightest, 1.0f) << "nits: the flame is not there";
+    for (const json& pass : json::parse(content("r.json")).at("passes"))
+        if (pass.at("name") == "shadow.maps") {
+            EXPECT_EQ(pass.at("status"), "skipped") << pass;
+        }
+}
+
 TEST_F(CaptureTest, FramesAreNumberedAndTheSameSeedGivesTheSameBits) {
     ASSERT_EQ(capture({foggy, "-o", "f-%04d.exr", "--size", "24x24", "--frames", "3", "--time-step",
                        "0.5", "--quiet"})
