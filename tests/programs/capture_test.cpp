@@ -179,8 +179,8 @@ TEST_F(CaptureTest, AFlameIsSeenWithoutAnyOtherTerm) {
                  "64x36", "--terms", "LE", "--aov", "terms", "--report", "r.json"});
     ASSERT_EQ(result.status, 0) << result.err;
     float brightest = 0;
-    for (const float value : exr("a.exr").layers[0].image.pixels)
-        brightest = std::max(brightest, value);
+    const ExrFile picture = exr("a.exr");
+    for (const float value : picture.layers[0].image.pixels) brightest = std::max(brightest, value);
     EXPECT_GT(brightest, 1.0f) << "nits: the flame is not there";
     const json report = json::parse(content("r.json"));
     for (const json& pass : report.at("passes"))
