@@ -101,6 +101,7 @@ TEST_P(DirectLight, IsTheReferences) {
         if (layer.name == "variance") floor = referenceFloor(expected, layer.image).value();
     std::printf("%s: relmse %.3g, of which the reference's noise %.3g, energy %.5f\n", test.scene,
                 metrics.relmse, floor, metrics.energy);
+    // What the project promises of its direct light; nothing of it is noise or rounding.
     EXPECT_LE(metrics.relmse - floor, 1e-3);
     EXPECT_NEAR(metrics.energy, 1, 0.005);
 }
