@@ -80,7 +80,8 @@ void ShadowPass::drawMap(const Data& data, size_t index, fg::PassContext& contex
         .state(emptyState())
         .draw(3);
 
-    const gpu::ShadowDrawParams params{data.plan->clipFromRender[index]};
+    const gpu::ShadowDrawParams params{data.plan->clipFromRender[index], data.plan->balls[index]};
+    const int ball = params.ball.w > 0 ? 1 : 0;
     const std::array<vec4, 5> planes = mapPlanes(params.clipFromRender);
     for (const AlphaMode mode : {AlphaMode::Opaque, AlphaMode::Mask, AlphaMode::Blend}) {
         const bool mask = mode != AlphaMode::Opaque;
@@ -88,7 +89,7 @@ void ShadowPass::drawMap(const Data& data, size_t index, fg::PassContext& contex
             if (run.first->topology != fg::Topology::Triangles)
                 return; // lines and points have no area
             auto command = context.raster("lighting/shadow.vert", "lighting/shadow.frag",
-                                          {{"MASK", mask ? 1 : 0}});
+                                          {{"MASK", mask ? 1 : 0}, {"BALL", ball}});
             command.depthOnly(depth)
                 .viewport(x, y, side, side)
                 .state(casterState(view.bias.y > 0.0f))
@@ -174,7 +175,7 @@ ShadowResources ShadowPass::addPasses(fg::FrameGraph& graph, const GpuScene& sce
                         data.atlas = builder.create(
                             "shadow.atlas", fg::texture2DArray(fg::Format::Depth32F, 1, 1, 1),
                             fg::Access::DepthTarget);
-                        builder.skip(!wanted ? "only emission is rendered"
+                        builder.skip(!wanted                 ? "only emission is rendered"
                                      : scene.items().empty() ? "no surface in the scene"
                                                              : "no light casts a shadow");
                     },

@@ -189,10 +189,11 @@ std::vector<Frustum> directionalViews(const gpu::LightData& light, const ShadowR
 
 std::vector<Frustum> localViews(const gpu::LightData& light, double nearDistance, int side,
                                 const dvec2& jitter) {
-    const bool onBall = light.samplePoint.w > 0;
-    const dvec3 from(onBall ? light.samplePoint : light.position);
-    // Light leaves a ball at its surface: what is inside, or the lamp's own glass, casts no shadow.
-    if (!onBall && light.type != gpu::kLightRect)
+    const bool inBall = light.samplePoint.w > 0;
+    const dvec3 from(inBall ? light.samplePoint : light.position);
+    // Light leaves a ball at its surface: what is inside, or the lamp's own glass, casts no shadow. (Seen from its middle; ballAround
+    // does the same for a point elsewhere in it.)
+    if (!inBall && light.type != gpu::kLightRect)
         nearDistance = std::max(nearDistance, 1.001 * double(light.direction.w));
     std::vector<Frustum> views;
     if (light.type == gpu::kLightSpot && double(light.axisY.w) >= std::cos(kWidestSpot)) {
@@ -339,6 +340,13 @@ void fitAtlas(std::span<const gpu::LightData> lights, std::vector<PlannedLight>&
     plan.layers = int((cells + perLayer - 1) / perLayer);
 }
 
+/// The ball of light that its maps look out of in averaged frames, a little larger, for its own glass lies on it; radius 0: none.
+vec4 ballAround(const gpu::LightData& light) {
+    const bool inBall = light.samplePoint.w > 0 &&
+                        (light.type == gpu::kLightPoint || light.type == gpu::kLightSpot);
+    return inBall ? vec4(vec3(light.position), 1.001f * light.direction.w) : vec4(0);
+}
+
 } // namespace
 
 ShadowPlan planShadows(std::span<gpu::LightData> lights, std::span<const uint32_t> chosen,
@@ -373,13 +381,16 @@ ShadowPlan planShadows(std::span<gpu::LightData> lights, std::span<const uint32_
         CHECK(int(frusta.size()) <= p.count, "a light has more shadow maps than were counted");
         const bool soft = !converge && (light.type == gpu::kLightRect || light.direction.w > 0);
         light.shadowIndex = int(plan.views.size());
+        const vec4 ball = ballAround(light);
         for (const Frustum& frustum : frusta) {
             gpu::ShadowView entry = describe(frustum, int(frusta.size()), soft, settings);
             atlas.place(entry, p.side);
-            const uint64_t key = hashView(frustum, entry, converge ? 1 : 0);
+            uint64_t key = hashView(frustum, entry, converge ? 1 : 0);
+            for (int i = 0; i < 4; ++i) key = fg::mixHash(key, std::bit_cast<uint32_t>(ball[i]));
             if (frustum.empty) entry.atlas.z = 0;
             plan.views.push_back(entry);
             plan.clipFromRender.push_back(mat4(frustum.clipFromRender));
+            plan.balls.push_back(ball);
             plan.keys.push_back(key);
         }
     }

@@ -18,6 +18,8 @@ namespace tyndall {
 struct ShadowPlan {
     std::vector<gpu::ShadowView> views; // in the order of `Lights`' shadow indices
     std::vector<mat4> clipFromRender;   // of each view, for drawing
+    std::vector<vec4>
+        balls; // of each view: the ball of light that it looks out of, centre and radius; radius 0: none
     std::vector<uint64_t> keys;    // of each view: what its picture depends on beside the casters
     int atlasSize = 0, layers = 0; // texels; 0: no map
     int shrunk = 0;                // times that all maps were halved to fit

@@ -1,5 +1,6 @@
 // Depth alone. MASK: where alpha is below the cutoff there is a hole; a blended surface is a screen of holes as dense as it is
-// transparent, another one in each averaged frame.
+// transparent, another one in each averaged frame. BALL: the map looks out of the inside of a ball of light, whose surface and contents
+// cast no shadow.
 #if MASK
 #include "common/random.glsl"
 #include "gbuffer/surface.glsl"
@@ -17,7 +18,16 @@ float holeThreshold() {
 }
 #endif
 
+#if BALL
+#include "shared/shadow.h"
+layout(std140) uniform Params { ShadowDrawParams params; };
+in vec3 positionRender;
+#endif
+
 void main() {
+#if BALL
+    if (distance(positionRender, params.ball.xyz) < params.ball.w) discard;
+#endif
 #if MASK
     MaterialData material = materials[objects[objectIndex].material];
     SurfacePoint point = SurfacePoint(vec3(0.0), vec3(0.0), vec4(0.0), uvSets01, uvSets23, color, true, true);

@@ -1,4 +1,4 @@
-// Casters of shadows. MASK: carries what the alpha test needs.
+// Casters of shadows. MASK: carries what the alpha test needs. BALL: and where the caster is.
 #include "gbuffer/mesh_vertex.glsl"
 #include "shared/shadow.h"
 
@@ -11,6 +11,10 @@ out vec4 color;
 flat out uint objectIndex;
 #endif
 
+#if BALL
+out vec3 positionRender;
+#endif
+
 void main() {
     uint drawn = drawnObject();
 #if MASK
@@ -19,5 +23,9 @@ void main() {
     uvSets23 = vec4(uvSet2, uvSet3);
     color = (objects[drawn].flags & kObjectHasColors) != 0u ? vertexColor : vec4(1.0);
 #endif
-    gl_Position = params.clipFromRender * (objects[drawn].renderFromLocal * vec4(positionLocal, 1.0));
+    vec4 position = objects[drawn].renderFromLocal * vec4(positionLocal, 1.0);
+#if BALL
+    positionRender = position.xyz;
+#endif
+    gl_Position = params.clipFromRender * position;
 }

@@ -24,6 +24,7 @@ struct ShadowView {
 /// Block `Params` of shadow.vert and shadow.frag.
 struct ShadowDrawParams {
     mat4 clipFromRender;
+    vec4 ball; // BALL: centre in render space and radius; what is inside casts no shadow
 };
 
 TYNDALL_SHARED_END

@@ -101,6 +101,24 @@ TEST(LightsOnLambert, AGlowingBallOfGasLightsAsFromItsMiddle) {
     expectIrradiance(gas, lux, options, 0.02);
 }
 
+/// A glowing surface must not shadow its own light, neither in one frame nor from the points in the ball that averaged frames take.
+TEST(LightsOnLambert, AGlowingBallLightsAsFromItsMiddle) {
+    const auto lux = [](dvec3 p) {
+        const dvec3 d = dvec3(3, 2, -0.4) - p;
+        return kPi * 0.3 * 0.3 * 6 * d.y / std::pow(glm::dot(d, d), 1.5); // πr²·L, candela
+    };
+    const char* ball =
+        R"({"name": "ball", "primitive": {"shape": "sphere", "size": [0.6, 0.6, 0.6]}, "material": {"emissive": [6, 6, 6]},
+        "translation": [3, 2, -0.4]})";
+    RenderOptions options;
+    options.terms = bit(Term::LSE);
+    expectIrradiance(ball, lux, options);
+    options.frames = 64;
+    options.converge = true;
+    // 64 points in a ball a tenth as wide as it is far away: each is off by up to 2·r/d = 30 %, a fifth of that on average, over √64.
+    expectIrradiance(ball, lux, options, 0.01);
+}
+
 TEST(LightsOnLambert, SpotLightHasTheConeOfTheExtension) {
     expectIrradiance(
         R"({"name": "torch", "light": {"type": "spot", "intensity": 50, "innerConeAngle": 0.2, "outerConeAngle": 0.6}, "translation": [0, 2, 0],
