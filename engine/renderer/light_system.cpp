@@ -234,7 +234,12 @@ void LightSystem::addMedia(const LightFrame& frame, std::vector<Collected>& all)
             c.data.type = gpu::kLightPoint;
             c.data.position = vec4(vec3(light.position - frame.renderOrigin), 0);
             c.data.direction = vec4(0, 0, -1, float(light.radius));
-            c.data.intensity = vec4(vec3(light.intensity), float(kNearestPart * sceneRadius_));
+            // In averaged frames the rest comes from shaders/media/near_glow.glsl.
+            const double nearest = kNearestPart * sceneRadius_;
+            c.data.intensity =
+                vec4(vec3(light.intensity),
+                     float(converge ? std::max(nearest, media_.nearDistance) : nearest));
+            c.data.flags = gpu::kLightFromMedium;
             c.data.shadowIndex = c.data.opticalDepthIndex = -1;
             all.push_back(c);
         }

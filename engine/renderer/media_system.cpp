@@ -173,6 +173,9 @@ gpu::MediaHeader MediaSystem::makeHeader(const MediaFrameRequest& request,
                  request.lights.begin());
     header.environmentLights =
         uint32_t(std::count_if(request.lights.begin(), request.lights.end(), fromEnvironment));
+    for (const gpu::LightData& light : request.lights)
+        if (converge && (light.flags & gpu::kLightFromMedium) != 0)
+            header.nearGlow = light.intensity.w; // the same for all
     const auto atOnce = uint32_t(settings_.environmentLights);
     header.environmentStride = (header.environmentLights + atOnce - 1) / atOnce;
     if (converge && exact && header.gridCount > 0) header.environmentStride *= kFewerPerCell;

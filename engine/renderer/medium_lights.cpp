@@ -12,7 +12,8 @@
 namespace tyndall {
 namespace {
 
-constexpr int kShapeBricks = 2; // a side of the box around a homogeneous shape: 16³ cells
+constexpr double kNearPart = 0.1; // of a part's radius
+constexpr int kShapeBricks = 2;   // a side of the box around a homogeneous shape: 16³ cells
 
 bool glows(const Medium& medium) {
     return medium.emission != vec3(0) || (medium.temperature && medium.temperatureScale > 0);
@@ -236,6 +237,12 @@ std::vector<MediumLight> MediumEmitter::sample(uint32_t frame, uint64_t key) con
     return result;
 }
 
+double MediumEmitter::nearDistance() const {
+    double sum = 0;
+    for (const MediumLight& light : lights()) sum += light.radius;
+    return parts_.empty() ? 0 : kNearPart * sum / double(parts_.size());
+}
+
 MediumEmitters findMediumEmitters(const Scene& scene, const std::vector<dmat4>& world,
                                   const std::vector<bool>& visible, int parts) {
     MediumEmitters result;
@@ -253,6 +260,8 @@ MediumEmitters findMediumEmitters(const Scene& scene, const std::vector<dmat4>& 
         if (medium.kind == MediumKind::Grid && !medium.density) continue;
         result.emitters.emplace_back(medium, world[i], parts);
         result.nodes.push_back(int(i));
+        if (const double near = result.emitters.back().nearDistance(); near > 0)
+            result.nearDistance = std::min(result.nearDistance, near);
     }
     return result;
 }

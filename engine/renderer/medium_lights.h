@@ -3,6 +3,7 @@
 // a medium's volume is given to a few of them. GL-free and in double.
 
 #include <cstdint>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -33,6 +34,8 @@ public:
     /// of any sum over these lights tends to the integral over the medium. Frames step through low-discrepancy sequences that
     /// `key` tells apart.
     [[nodiscard]] std::vector<MediumLight> sample(uint32_t frame, uint64_t key) const;
+    /// Metres, small beside the parts: a point of sample() stands for its part only from that far on. 0: nothing glows.
+    [[nodiscard]] double nearDistance() const;
 
 private:
     struct Brick {
@@ -69,7 +72,8 @@ private:
 
 struct MediumEmitters {
     std::vector<MediumEmitter> emitters;
-    std::vector<int> nodes; // of each
+    std::vector<int> nodes;                                        // of each
+    double nearDistance = std::numeric_limits<double>::infinity(); // the least of all that glow
     std::vector<std::string>
         notes; // a sentence for each medium that glows and lights nothing, and why
 };

@@ -20,6 +20,7 @@
 #include "lighting/environment.glsl"
 #endif
 #if MEDIA
+#include "media/near_glow.glsl"
 #include "media/optical_depth.glsl"
 #endif
 
@@ -132,6 +133,20 @@ vec3 environmentReflection(LitPoint point) {
 }
 #endif
 
+#if MEDIA
+// Of glowing media that the surface lies in: a direction in proportion to its cosine.
+vec3 lightOfNearGlow(LitPoint point) {
+    vec2 u = pixelNoise2(point.pixel, 8u);
+    float turn = 2.0 * kPi * u.y;
+    vec3 direction = frameAround(point.normal) * vec3(sqrt(u.x) * vec2(cos(turn), sin(turn)), sqrt(1.0 - u.x));
+    if (!(dot(direction, point.geometricNormal) > 0.0)) return vec3(0.0);
+    vec3 radiance = nearGlow(point.position, direction, pixelNoise(point.pixel, 9u));
+    if (!(maximumOf(radiance) > 0.0)) return vec3(0.0);
+    BrdfValue value = evaluateBrdf(point.brdf, point.normal, point.toEye, direction);
+    return kPi * (value.diffuse + value.specular) * radiance;
+}
+#endif
+
 // Radiance towards the eye, nits: LSE before the media between the surface and the eye.
 vec3 directLight(LitPoint point) {
     vec3 sum = vec3(0.0);
@@ -155,6 +170,9 @@ vec3 directLight(LitPoint point) {
         vec3 visible = seen.weight > 0.0 ? seen.seen / seen.weight : vec3(1.0);
         fromEnvironment += (1.0 - lightsShare) * visible * environmentReflection(point);
     }
+#endif
+#if MEDIA
+    if (mediaHeader.nearGlow > 0.0) sum += lightOfNearGlow(point);
 #endif
     return sum + fromEnvironment * (surfaceLight.materialOcclusion != 0u ? point.occlusion : 1.0);
 }

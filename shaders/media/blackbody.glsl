@@ -13,15 +13,19 @@ vec3 blackbodyRadiance(float kelvin) {
     return entry.xyz * exp2(entry.w);
 }
 
-/// Nits per metre that all media emit by their temperature at a point of render space.
+/// Nits per metre that medium `m` emits by its temperature at a point of render space where its density is 1.
+vec3 blackbodyEmission(uint m, vec3 position) {
+    vec3 cell = (media[m].temperatureFromRender * vec4(position, 1.0)).xyz;
+    return media[m].emission.w * blackbodyRadiance(sampleGrid(media[m].temperatureBricks, cell));
+}
+
+/// The same of all media, with their densities.
 vec3 blackbodyEmission(vec3 position) {
     vec3 sum = vec3(0.0);
     for (uint m = 0u; m < mediumCount(); ++m) {
         if (!(media[m].emission.w > 0.0)) continue;
         float density = mediumDensity(m, position);
-        if (!(density > 0.0)) continue;
-        vec3 cell = (media[m].temperatureFromRender * vec4(position, 1.0)).xyz;
-        sum += (density * media[m].emission.w) * blackbodyRadiance(sampleGrid(media[m].temperatureBricks, cell));
+        if (density > 0.0) sum += density * blackbodyEmission(m, position);
     }
     return sum;
 }

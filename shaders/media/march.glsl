@@ -21,6 +21,7 @@
 #if MARCH_GATHERS
 #include "lighting/light.glsl"
 #include "lighting/shadow.glsl"
+#include "media/near_glow.glsl"
 #endif
 #include "media/march_segment.glsl"
 #include "shared/march.h"
@@ -201,6 +202,14 @@ vec3 segmentLight(uint light, Ray ray, Segment s, vec3 noise) {
     return points == 0 ? sum : sum / float(abs(points));
 }
 
+/// What glowing media send to the segment from close by.
+vec3 segmentNearGlow(Ray ray, Segment s, vec3 noise) {
+    GatherPoint point = gatherBySegment(s, noise.x);
+    vec3 direction = directionOnSphere(noise.yz);
+    vec3 radiance = nearGlow(ray.origin + ray.direction * (s.start + s.size * point.fraction), direction, unitFloat(hashUint(floatBitsToUint(noise.x))));
+    return 4.0 * kPi * point.weight * scatteredLight(s, dot(direction, ray.direction), vec3(0.0)) * radiance;
+}
+
 /// How many of `lightCount` lights do not stand for the environment, and the number of the i-th of them.
 uint sceneLights(uint lightCount) { return lightCount - min(mediaHeader.environmentLights, lightCount); }
 uint sceneLight(uint i) { return i < mediaHeader.environmentFirst ? i : i + mediaHeader.environmentLights; }
@@ -219,6 +228,7 @@ uint marchLight(uint slot);
 /// next segment others. They are about equally strong, and a ray has many segments.
 vec3 segmentInScatter(Ray ray, Segment s, uint lightCount, vec3 noise, uint turn) {
     vec3 sum = vec3(0.0);
+    if (mediaHeader.nearGlow > 0.0) sum += segmentNearGlow(ray, s, noise);
     uint slots = marchLightSlots(lightCount);
     uint stride = max(mediaHeader.environmentStride, 1u);
     uint skipped = turn % stride;

@@ -11,6 +11,7 @@ TYNDALL_CONST uint kLightSpot = 2u;
 TYNDALL_CONST uint kLightRect = 3u;
 
 TYNDALL_CONST uint kLightFromEnvironment = 1u; // its specular part comes from the environment map instead
+TYNDALL_CONST uint kLightFromMedium = 2u;      // stands for a glowing medium, but for what is closer than intensity.w
 
 struct LightData {
     vec4 position;      // render space: point, spot, rect (centre); w: range in metres, 0 unbounded

@@ -42,8 +42,8 @@ struct MediaHeader {
     uint environmentFirst;   // number of the first of the lights that stand for the environment; they are neighbours
     uint environmentLights;  // how many they are
     uint environmentStride;  // a segment of a march gathers from every so many-th of them, perhaps of none; 0 as 1
+    float nearGlow;          // metres: closer than this, glowing media light by shaders/media/near_glow.glsl; 0: they do not
     uint padding0;
-    uint padding1;
 };
 #ifdef __cplusplus
 static_assert(sizeof(MediaHeader) % 16 == 0, "the media follow it in one buffer");

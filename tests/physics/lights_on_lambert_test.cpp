@@ -101,6 +101,49 @@ TEST(LightsOnLambert, AGlowingBallOfGasLightsAsFromItsMiddle) {
     expectIrradiance(gas, lux, options, 0.02);
 }
 
+/// A clear ball of even glow whose middle lies in the floor, from inside: the light from a direction is ε times the way to the ball's
+/// surface. Of that way, the part that changes sign with the direction's horizontal part cancels.
+TEST(LightsOnLambert, AGlowingBallOfGasLightsWhatIsInside) {
+    constexpr double kEmission = 5, kRadius = 2.4;
+    const auto lux = [&](dvec3 p) {
+        const double squared = glm::dot(p, p);
+        constexpr int kSteps = 32;
+        double sum = 0;
+        for (int i = 0; i < kSteps; ++i)
+            for (int j = 0; j < kSteps; ++j) {
+                // Midpoints even in sin²θ and φ: directions in proportion to their cosine.
+                const double across =
+                    (i + 0.5) / kSteps * std::pow(std::cos(2 * kPi * (j + 0.5) / kSteps), 2);
+                sum += std::sqrt(kRadius * kRadius - squared * (1 - across));
+            }
+        return kPi * kEmission * sum / (kSteps * kSteps);
+    };
+    const char* gas =
+        R"({"name": "gas", "medium": {"type": "homogeneous", "shape": "sphere", "size": [4.8, 4.8, 4.8],
+        "scattering": [0, 0, 0], "absorption": [0, 0, 0], "emission": [5, 5, 5]}})";
+    RenderOptions options;
+    options.terms = bit(Term::LSE);
+    options.width = options.height = kSize;
+    options.frames = 1024;
+    options.converge = true;
+    options.settings = {"shadows.localResolution=64"};
+    const Rendered picture = sharedRenderer().render(sceneFromJson(planeScene(gas)), options);
+    double sum = 0, squares = 0;
+    for (int y = 0; y < kSize; ++y)
+        for (int x = 0; x < kSize; ++x) {
+            const double ratio =
+                double(picture.pixel(x, y).y) / (kAlbedo / kPi * lux(pointUnder(x, y)));
+            sum += ratio / (kSize * kSize);
+            squares += (ratio - 1) * (ratio - 1) / (kSize * kSize);
+        }
+    std::printf("inside the ball: mean %.4f, rms error %.4f\n", sum, std::sqrt(squares));
+    // The mean moves by 1.6 % from seed to seed after 256 frames. Without the light from close by it is 4.4 % too low.
+    EXPECT_NEAR(sum, 1, 0.016);
+    // With distances counted as b at least, n points in a ball of radius R have a relative variance of 4/9·R/(b·n): 4 % for 4,096 points
+    // and b a fifteenth of R. Unbounded, the variance is infinite: the nearest point alone makes up a good part of some pixels.
+    EXPECT_LE(std::sqrt(squares), 0.05);
+}
+
 /// A glowing surface must not shadow its own light, neither in one frame nor from the points in the ball that averaged frames take.
 TEST(LightsOnLambert, AGlowingBallLightsAsFromItsMiddle) {
     const auto lux = [](dvec3 p) {
