@@ -27,26 +27,7 @@ void addOptions(CLI::App& program, EditorOptions& options) {
         .add_option("--size", render.size,
                     "Width and height of the picture in pixels (as the viewport has room)")
         ->type_name("WxH");
-    program
-        .add_option("--gi", render.gi,
-                    "Technique for indirect light: auto, none, a name, or TERM=NAME,... (auto)")
-        ->type_name("NAME");
-    program
-        .add_option("--terms", render.terms,
-                    "Transport terms to render, comma-separated: LE,LSE,LVE ... (all)")
-        ->type_name("LIST");
-    program.add_option("--quality", render.quality, "Preset: low, medium, high or ultra")
-        ->type_name("NAME");
-    program
-        .add_option("--set", render.assignments,
-                    "Any setting, repeatable; 'tyndall info --settings' lists them")
-        ->type_name("KEY=VALUE")
-        ->allow_extra_args(false);
-    program
-        .add_option("--plugin", render.plugins,
-                    "A shared-library plugin, by name or file, repeatable")
-        ->type_name("PLUGIN")
-        ->allow_extra_args(false);
+    addTechniqueOptions(program, render);
     program
         .add_option("--camera", render.camera,
                     "The camera to look through first, by node name (the scene's own)")
@@ -59,7 +40,6 @@ void addOptions(CLI::App& program, EditorOptions& options) {
         ->allow_extra_args(false);
     program.add_option("--time", render.time, "Seconds on the scene's clock (0)")
         ->type_name("SECONDS");
-    program.add_option("--seed", render.seed, "Seed of everything random (0)")->type_name("N");
     program.add_flag("--converge", options.converge,
                      "Average frames of the still scene until the noise is gone");
     program.add_option("--window", options.windowSize, "Width and height of the window (1600x950)")

@@ -41,19 +41,7 @@ std::vector<fs::path> pluginFolders() {
             (program / "../lib/plugins").lexically_normal()};
 }
 
-void addRenderOptions(CLI::App& command, RenderOptions& options) {
-    command.add_option("SCENE", options.scene, "A scene file, or a .gltf, .glb, .vdb or .nvdb")
-        ->required();
-    command.add_option("--size", options.size, "Width and height in pixels (1280x720)")
-        ->type_name("WxH");
-    command
-        .add_option("--backend", options.backend,
-                    "How to get an OpenGL context: auto, egl or osmesa (auto)")
-        ->type_name("NAME");
-    command
-        .add_option("--device", options.device,
-                    "The EGL device to render on; 'tyndall info' lists them")
-        ->type_name("N");
+void addTechniqueOptions(CLI::App& command, RenderOptions& options) {
     command
         .add_option("--gi", options.gi,
                     "Technique for indirect light: auto, none, a name, or TERM=NAME,... (auto)")
@@ -74,6 +62,23 @@ void addRenderOptions(CLI::App& command, RenderOptions& options) {
                     "A shared-library plugin, by name or file, repeatable")
         ->type_name("PLUGIN")
         ->allow_extra_args(false);
+    command.add_option("--seed", options.seed, "Seed of everything random (0)")->type_name("N");
+}
+
+void addRenderOptions(CLI::App& command, RenderOptions& options) {
+    command.add_option("SCENE", options.scene, "A scene file, or a .gltf, .glb, .vdb or .nvdb")
+        ->required();
+    command.add_option("--size", options.size, "Width and height in pixels (1280x720)")
+        ->type_name("WxH");
+    command
+        .add_option("--backend", options.backend,
+                    "How to get an OpenGL context: auto, egl or osmesa (auto)")
+        ->type_name("NAME");
+    command
+        .add_option("--device", options.device,
+                    "The EGL device to render on; 'tyndall info' lists them")
+        ->type_name("N");
+    addTechniqueOptions(command, options);
     command
         .add_option("--camera", options.camera,
                     "The camera to look through, by node name (the scene's own)")
@@ -86,7 +91,6 @@ void addRenderOptions(CLI::App& command, RenderOptions& options) {
         ->allow_extra_args(false);
     command.add_option("--time", options.time, "Where the scene's clock starts (0)")
         ->type_name("SECONDS");
-    command.add_option("--seed", options.seed, "Seed of everything random (0)")->type_name("N");
 }
 
 Result<void> parseSize(const std::string& text, int& width, int& height) {

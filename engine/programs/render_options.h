@@ -46,6 +46,9 @@ struct RenderPlan {
     std::vector<std::filesystem::path> plugins;
 };
 
+/// What to render with: --gi, --terms, --quality, --set, --plugin, --seed.
+void addTechniqueOptions(CLI::App& command, RenderOptions& options);
+/// Those, and the scene, the picture's size, where to look from, and where to render it.
 void addRenderOptions(CLI::App& command, RenderOptions& options);
 /// Errors name the option, what it says and what it takes.
 Result<RenderPlan> understand(const RenderOptions& options);

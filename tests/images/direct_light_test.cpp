@@ -29,8 +29,8 @@ const Case kCases[] = {
     {"content/furnace.scene.json", 128, false},
     {"content/campfire.scene.json", 256, false},
     {"content/cloud.scene.json", 128, false},
-    {"content/fog_hall.scene.json", 1024, false},
-    {"content/demo.scene.json", 1024, false},
+    {"content/fog_hall.scene.json", 512, false},
+    {"content/demo.scene.json", 512, false},
     {"tests/bench/peers/scenes/smoke.scene.json", 128, false},
     {"tests/scenes/sponza_fog_smoke.scene.json", 128, false},
 };
