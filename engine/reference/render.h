@@ -51,7 +51,7 @@ private:
 };
 
 /// Counts up whenever the pictures that this path tracer makes of the same scene change: pictures kept from before are then stale.
-inline constexpr int kReferenceVersion = 1;
+inline constexpr int kReferenceVersion = 2;
 
 /// A number for all in the scene that its picture depends on: geometry, materials, textures, lights, media, camera.
 uint64_t sceneHash(const Scene& scene, int cameraNode);

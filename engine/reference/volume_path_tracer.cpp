@@ -13,7 +13,9 @@ constexpr double kRouletteWeight = 0.25;
 constexpr double kLeastSurvival = 0.05;
 /// From so many scatterings on, all paths are ended by chance, whatever they carry.
 constexpr int kLongPath = 1000;
-/// Behind the first segment, the chance of aiming from a segment follows how much it scatters, but is not less than this.
+/// Behind the first segment, the chance of aiming from a segment is so many times what it scatters of the path, but not less than that.
+/// Measured on fog in a box: 4 needs a tenth less time for an error than 2 or 8.
+constexpr double kAimsPerScattering = 4;
 constexpr double kLeastAimChance = 0.1;
 
 } // namespace
@@ -236,7 +238,8 @@ bool VolumePathTracer::decideToAimFromSegment(const Ray& ray) {
     if (alongSegment_.empty()) return false;
     aimChance_ = history_.count() == 0
                      ? 1
-                     : std::clamp(2 * segment_.collisionChance() * maximumOf(weights_.carried()),
+                     : std::clamp(kAimsPerScattering * segment_.collisionChance() *
+                                      maximumOf(weights_.carried()),
                                   kLeastAimChance, 1.0);
     return aimChance_ == 1 || sampler_->random() < aimChance_;
 }
