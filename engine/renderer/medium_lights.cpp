@@ -111,6 +111,7 @@ MediumEmitter::Brick MediumEmitter::measure(const ivec3& index) {
     }
     if (!(brick.power > 0) || !std::isfinite(brick.power)) return brick;
     brick.middle /= brick.power;
+    brick.spread = glm::dot(edges_, edges_) / 12; // within a cell
     for (int i = 0; i < kCells; ++i) {
         if (!(powers[i] > 0)) continue;
         const double d = distance(dvec3(cellOf(index, i)) + 0.5 - brick.middle);

@@ -1,5 +1,7 @@
 #include "renderer/medium_lights.h"
 
+#include <cmath>
+
 #include <gtest/gtest.h>
 
 namespace tyndall {
@@ -53,6 +55,9 @@ TEST(MediumLights, ABoxGivesItsVolumeTimesItsEmissionAndItsMoments) {
         EXPECT_NEAR(box.intensity()[c], 3.0 * (2 + c), 1e-9);
         EXPECT_NEAR(sumOf(box.lights())[c], 3.0 * (2 + c), 1e-9);
     }
+    // As one ball: its mean square distance from the middle, 3/5 R², is the box'.
+    const double spread = (4 + 9 + 0.25) / 12;
+    EXPECT_NEAR(find(scene, 1).emitters[0].lights()[0].radius, std::sqrt(spread * 5 / 3), 1e-9);
     EXPECT_EQ(box.lights().size(), 4u);
     EXPECT_EQ(box.sample(0, 5).size(), 4u);
     // ∫ x dV / V is the middle, ∫ (x-middle)² dV / V a twelfth of the side squared. A thousandth is the sequence's own error.
@@ -118,6 +123,23 @@ TEST(MediumLights, AFlameIsTheSumOverItsVoxelsOfDensityTimesPlancksLaw) {
         }
         EXPECT_NEAR(average(emitter, [](dvec3) { return 1.0; }) / expected.y, 1, 0.01);
     }
+}
+
+TEST(MediumLights, PointsStandForTheirPartFromAShortDistanceOn) {
+    // However small the glow, here a single voxel, that distance is not 0; of several media the least holds for all.
+    Scene scene = glowing(MediumKind::Grid, dvec3(1));
+    scene.media[0].density = std::make_shared<BrickGrid>(makeBrickGrid(
+        std::vector<float>{1}, {0, 0, 0}, ivec3(1), glm::scale(dmat4(1), dvec3(0.1))));
+    const double spark = find(scene, 4).nearDistance;
+    EXPECT_GT(spark, 0.001);
+    EXPECT_LT(spark, 0.1);
+    const double box = find(glowing(MediumKind::Box, {20, 20, 20}), 4).nearDistance;
+    EXPECT_GT(box, 0.1);
+    scene.media.push_back(glowing(MediumKind::Box, {20, 20, 20}).media[0]);
+    scene.nodes.push_back(scene.nodes[0]);
+    scene.nodes[1].medium = 1;
+    EXPECT_EQ(find(scene, 4).nearDistance, spark);
+    EXPECT_TRUE(std::isinf(find(Scene{}, 4).nearDistance));
 }
 
 TEST(MediumLights, WhatHasNoEndLightsNothingAndSaysSo) {
