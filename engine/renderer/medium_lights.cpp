@@ -12,8 +12,9 @@
 namespace tyndall {
 namespace {
 
-constexpr double kNearPart = 0.1; // of a part's radius
-constexpr int kShapeBricks = 2;   // a side of the box around a homogeneous shape: 16³ cells
+constexpr double kNearPart =
+    0.3; // of a part's radius: wide enough against fireflies, near enough that little stands in between
+constexpr int kShapeBricks = 2; // a side of the box around a homogeneous shape: 16³ cells
 
 bool glows(const Medium& medium) {
     return medium.emission != vec3(0) || (medium.temperature && medium.temperatureScale > 0);

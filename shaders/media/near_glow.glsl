@@ -4,7 +4,7 @@
 // medium are arbitrarily close to some of them, and the mean of 1/d² would settle as slowly as its variance is: infinite. So lights
 // that stand for a medium count distances below b = mediaHeader.nearGlow as b (LightData.intensity.w), which leaves out
 // ∫ ε (1/d² − 1/b²) dV over the ball of radius b around the point. With dV = d² dω dd the integrand is ε (1 − d²/b²): bounded, and
-// had here from a direction and a distance. b is so small that nothing is looked for that would stand between. The split is that of
+// had here from a direction and a distance. b is so small that what stands between is not looked for. The split is that of
 // bias compensation for virtual point lights (Kollig and Keller 2004, "Illumination in the Presence of Weak Singularities").
 #ifndef TYNDALL_MEDIA_NEAR_GLOW
 #define TYNDALL_MEDIA_NEAR_GLOW
