@@ -33,7 +33,7 @@ const Case kCases[] = {
     {"content/cornell.scene.json", 256, true},
     {"content/cornell_fog.scene.json", 256, true},
     {"content/furnace.scene.json", 128, false},
-    {"content/campfire.scene.json", 192, false},
+    {"content/campfire.scene.json", 128, false},
     {"content/cloud.scene.json", 128, false},
     {"content/fog_hall.scene.json", 512, false},
     {"content/demo.scene.json", 512, false},
