@@ -237,7 +237,7 @@ dvec3 MediumEmitter::emittedFrom(const Part& part, double u, const dvec3& inCell
     // A flame grows tenfold within a cell: one of its eighths, by what its middle emits, and never without a chance.
     double eighths[8], sum = 0;
     for (int e = 0; e < 8; ++e) sum += eighths[e] = meanOf(emission(corner + innerPoint(e)));
-    const double least = kLeastEighth * sum;
+    const double least = sum > 0 ? kLeastEighth * sum : 1.0; // all light from a face: any eighth
     double rest = std::clamp(left / double(powers[chosen]), 0.0, 1.0) * (sum + 8 * least);
     int eighth = 0;
     while (eighth < 7 && rest >= eighths[eighth] + least) rest -= eighths[eighth++] + least;
