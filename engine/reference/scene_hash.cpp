@@ -34,6 +34,7 @@ public:
     void add(const dmat4& m) {
         for (int i = 0; i < 4; ++i) add(m[i]);
     }
+    template <typename... T> void each(const T&... values) { (add(values), ...); }
     template <typename T> void all(const std::vector<T>& values) {
         bytes(values.data(), values.size() * sizeof(T));
     }
@@ -47,13 +48,8 @@ void addTexture(Hash& hash, const Scene& scene, const TextureRef& ref) {
     hash.add(ref.texture != kNone);
     if (ref.texture == kNone) return;
     const Texture& texture = scene.textures[size_t(ref.texture)];
-    hash.add(ref.uvSet);
-    hash.add(ref.offset);
-    hash.add(ref.scale);
-    hash.add(ref.rotation);
-    hash.add(int(texture.sampler.magnify));
-    hash.add(int(texture.sampler.wrapU));
-    hash.add(int(texture.sampler.wrapV));
+    hash.each(ref.uvSet, ref.offset, ref.scale, ref.rotation, int(texture.sampler.magnify),
+              int(texture.sampler.wrapU), int(texture.sampler.wrapV));
     if (texture.image == kNone) return;
     const ImageData& image = scene.images[size_t(texture.image)];
     hash.add(image.width);
@@ -62,16 +58,8 @@ void addTexture(Hash& hash, const Scene& scene, const TextureRef& ref) {
 }
 
 void addMaterial(Hash& hash, const Scene& scene, const Material& m) {
-    hash.add(m.baseColor);
-    hash.add(m.metallic);
-    hash.add(m.roughness);
-    hash.add(m.specular);
-    hash.add(m.emissive);
-    hash.add(m.normalScale);
-    hash.add(int(m.alphaMode));
-    hash.add(m.alphaCutoff);
-    hash.add(m.doubleSided);
-    hash.add(m.unlit);
+    hash.each(m.baseColor, m.metallic, m.roughness, m.specular, m.emissive, m.normalScale,
+              int(m.alphaMode), m.alphaCutoff, m.doubleSided, m.unlit);
     for (const TextureRef* ref :
          {&m.baseColorTexture, &m.metallicRoughnessTexture, &m.normalTexture, &m.emissiveTexture})
         addTexture(hash, scene, *ref);
@@ -91,9 +79,7 @@ void addMesh(Hash& hash, const Scene& scene, const Mesh& mesh) {
 void addGrid(Hash& hash, const BrickGrid* grid) {
     hash.add(grid != nullptr);
     if (!grid) return;
-    hash.add(grid->origin);
-    hash.add(grid->brickCount);
-    hash.add(grid->worldFromIndex);
+    hash.each(grid->origin, grid->brickCount, grid->worldFromIndex);
     for (const Brick& brick : grid->bricks) {
         hash.add(brick.minimum);
         hash.add(brick.maximum);
@@ -103,30 +89,15 @@ void addGrid(Hash& hash, const BrickGrid* grid) {
 }
 
 void addMedium(Hash& hash, const Medium& m) {
-    hash.add(int(m.kind));
-    hash.add(m.size);
-    hash.add(m.scaleHeight);
-    hash.add(m.scattering);
-    hash.add(m.absorption);
-    hash.add(m.anisotropy);
-    hash.add(int(m.phase));
-    hash.add(m.emission);
-    hash.add(m.temperatureScale);
+    hash.each(int(m.kind), m.size, m.scaleHeight, m.scattering, m.absorption, m.anisotropy,
+              int(m.phase), m.emission, m.temperatureScale);
     addGrid(hash, m.density.get());
     addGrid(hash, m.temperature.get());
 }
 
 void addLight(Hash& hash, const Light& l) {
-    hash.add(int(l.type));
-    hash.add(l.color);
-    hash.add(l.intensity);
-    hash.add(l.range);
-    hash.add(l.radius);
-    hash.add(l.innerConeAngle);
-    hash.add(l.outerConeAngle);
-    hash.add(l.size);
-    hash.add(l.radiance);
-    hash.add(l.castsShadows);
+    hash.each(int(l.type), l.color, l.intensity, l.range, l.radius, l.innerConeAngle,
+              l.outerConeAngle, l.size, l.radiance, l.castsShadows);
 }
 
 } // namespace
@@ -146,20 +117,14 @@ uint64_t sceneHash(const Scene& scene, int cameraNode) {
         if (node.medium != kNone) addMedium(hash, scene.media[size_t(node.medium)]);
     }
     const Environment& e = scene.environment;
-    hash.add(e.radiance);
-    hash.add(e.intensity);
-    hash.add(e.rotation);
+    hash.each(e.radiance, e.intensity, e.rotation);
     if (e.image) {
         hash.add(e.image->width);
         hash.add(e.image->height);
         hash.all(e.image->pixels);
     }
     const Camera& camera = scene.cameras[size_t(scene.nodes[size_t(cameraNode)].camera)];
-    hash.add(world[size_t(cameraNode)]);
-    hash.add(int(camera.type));
-    hash.add(camera.yfov);
-    hash.add(camera.ymag);
-    hash.add(camera.znear);
+    hash.each(world[size_t(cameraNode)], int(camera.type), camera.yfov, camera.ymag, camera.znear);
     return hash.value();
 }
 

@@ -12,6 +12,7 @@
 #include "programs/process.h"
 #include "programs/scenes.h"
 #include "support/content.h"
+#include "support/images.h"
 
 namespace tyndall::test {
 namespace {
@@ -22,16 +23,7 @@ using ::testing::HasSubstr;
 using ::testing::Not;
 using ::testing::StartsWith;
 
-/// 16×12 pixels of one colour.
-Image plain(float r, float g, float b) {
-    Image image(16, 12, 3);
-    for (size_t i = 0; i < image.pixels.size(); i += 3) {
-        image.pixels[i] = r;
-        image.pixels[i + 1] = g;
-        image.pixels[i + 2] = b;
-    }
-    return image;
-}
+Image plain(float r, float g, float b) { return test::uniformImage(16, 12, r, g, b); }
 
 struct CompareTest : ::testing::Test {
     ProcessOptions options;

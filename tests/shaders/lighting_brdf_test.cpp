@@ -4,7 +4,7 @@
 #include <random>
 
 #include "gl/gl_fixture.h"
-#include "shaders/lighting_compute.h"
+#include "shaders/table_compute.h"
 #include "support/content.h"
 
 namespace tyndall::test {

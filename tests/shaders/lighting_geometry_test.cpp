@@ -6,7 +6,7 @@
 #include "gl/gl_fixture.h"
 #include "renderer/environment_map.h"
 #include "renderer/view.h"
-#include "shaders/lighting_compute.h"
+#include "shaders/table_compute.h"
 #include "support/content.h"
 
 namespace tyndall::test {

@@ -1,34 +1,14 @@
 #include "shaders/media_compute.h"
 
 #include <cstring>
-#include <functional>
-#include <stdexcept>
 
 #include "gl/api.h"
 #include "media/blackbody.h"
+#include "shaders/table_compute.h"
 #include "shared/view.h"
 
 namespace tyndall::test {
 namespace {
-
-std::string sourceOf(const std::vector<std::string>& includes, std::string_view body) {
-    std::string text;
-    for (const std::string& include : includes) text += "#include \"" + include + "\"\n";
-    text +=
-        "layout(local_size_x = 32) in;\n"
-        "layout(std430) readonly buffer Inputs { vec4 inputs[]; };\n"
-        "layout(std430) writeonly buffer Outputs { vec4 outputs[]; };\n"
-        "uniform uint invocationCount;\n"
-        "void main() {\n    uint id = gl_GlobalInvocationID.x;\n    if (id >= invocationCount) return;\n";
-    text += body;
-    return text + "\n}\n";
-}
-
-void bindStorage(const gl::Program& program, const char* name, const gl::Buffer& buffer) {
-    const gl::ProgramResource* block = program.find(name);
-    if (block && buffer)
-        glBindBufferBase(GL_SHADER_STORAGE_BUFFER, GLuint(block->binding), buffer.id());
-}
 
 void bindTexture(const gl::Program& program, const char* name, const gl::Texture& texture) {
     const gl::ProgramResource* sampler = program.find(name);
@@ -150,30 +130,13 @@ void MediaCompute::bind(const gl::Program& program) {
 std::vector<vec4> MediaCompute::run(gl::ShaderLibrary& library,
                                     const std::vector<std::string>& includes, std::string_view body,
                                     std::span<const vec4> inputs, uint32_t count) {
-    const std::string source = sourceOf(includes, body),
-                      path = "test/" + std::to_string(std::hash<std::string>{}(source)) + ".comp";
-    library.addSource(path, source);
-    Result<const gl::Program*> found = library.compute(path);
-    if (!found) throw std::runtime_error(found.message());
-    const gl::Program& program = **found;
-    const vec4 none(0);
-    const gl::Buffer input("inputs", inputs.empty() ? std::as_bytes(std::span(&none, 1))
-                                                    : std::as_bytes(inputs));
-    gl::Buffer output("outputs", count * sizeof(vec4));
-    output.clear();
-    glUseProgram(program.id());
-    bind(program);
     // Shadow maps that no light asks for still have to be bound.
     gl::Buffer noShadows("shadows", 1024);
     noShadows.clear();
-    bindStorage(program, "ShadowViews", noShadows);
-    bindStorage(program, "Inputs", input);
-    bindStorage(program, "Outputs", output);
-    program.set("invocationCount", count);
-    glDispatchCompute((count + 31) / 32, 1, 1);
-    glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
-    glUseProgram(0);
-    return output.readAll<vec4>();
+    return runTable(library, includes, body, inputs, count, count, [&](const gl::Program& program) {
+        bind(program);
+        bindStorage(program, "ShadowViews", noShadows);
+    });
 }
 
 } // namespace tyndall::test

@@ -5,7 +5,7 @@
 
 #include "core/tone_curve.h"
 #include "gl/gl_fixture.h"
-#include "shaders/lighting_compute.h"
+#include "shaders/table_compute.h"
 #include "support/content.h"
 
 namespace tyndall::test {

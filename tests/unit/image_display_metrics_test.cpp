@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 
 #include "core/tone_curve.h"
+#include "support/images.h"
 
 namespace tyndall {
 namespace {
@@ -52,15 +53,7 @@ template <int side> Rgb checkered(int x, int y) {
 Image referencePicture() { return fromBytes(64, 48, referenceRule); }
 Image testPicture() { return fromBytes(64, 48, testRule); }
 
-Image uniform(float r, float g, float b) {
-    Image image(24, 24, 3);
-    for (size_t i = 0; i < image.pixels.size(); i += 3) {
-        image.pixels[i] = r;
-        image.pixels[i + 1] = g;
-        image.pixels[i + 2] = b;
-    }
-    return image;
-}
+Image uniform(float r, float g, float b) { return test::uniformImage(24, 24, r, g, b); }
 
 // scikit-image 0.19.3 (Debian 0.19.3-8): peak_signal_noise_ratio(reference, test) of the 8-bit pictures.
 TEST(Psnr, EqualsScikitImage) {

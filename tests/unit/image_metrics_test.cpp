@@ -4,18 +4,12 @@
 
 #include <gtest/gtest.h>
 
+#include "support/images.h"
+
 namespace tyndall {
 namespace {
 
-Image constant(float r, float g, float b) {
-    Image image(4, 2, 3);
-    for (size_t i = 0; i < image.pixels.size(); i += 3) {
-        image.pixels[i] = r;
-        image.pixels[i + 1] = g;
-        image.pixels[i + 2] = b;
-    }
-    return image;
-}
+Image constant(float r, float g, float b) { return test::uniformImage(4, 2, r, g, b); }
 
 TEST(ImageMetrics, ConstantImagesHaveTheValuesWorkedOutByHand) {
     // r = (1,2,3), m = 2, 0.01·m² = 0.04; v = (2,2,1): squares 1, 0, 4.
