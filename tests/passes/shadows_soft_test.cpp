@@ -1,6 +1,6 @@
 // Soft shadows and occluded skies, against closed forms.
 
-#include "passes/lights_fixture.h"
+#include "passes/shadows_scene.h"
 
 #include <glm/gtc/matrix_transform.hpp>
 
@@ -11,8 +11,6 @@ namespace {
 
 using SoftShadows = LightsTest;
 TYNDALL_GL_TESTS(SoftShadows);
-
-constexpr dvec3 kUp{0, 1, 0};
 
 /// Part of a disc's area on one side of a chord at signed distance x (in radii) from its centre.
 double discPart(double x) {

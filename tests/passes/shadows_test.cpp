@@ -1,6 +1,6 @@
-// Shadows at the right place: against rays; what makes holes, what leaks; and counts of what is drawn.
+// Shadows at the right place: against rays; what makes holes, what leaks.
 
-#include "passes/lights_fixture.h"
+#include "passes/shadows_scene.h"
 
 #include <glm/gtc/matrix_transform.hpp>
 
@@ -14,55 +14,6 @@ namespace {
 
 using ShadowsOnPoints = LightsTest;
 TYNDALL_GL_TESTS(ShadowsOnPoints);
-
-constexpr dvec3 kUp{0, 1, 0};
-
-/// Distance by which the segment from a to b misses (positive) or enters (negative) the box, roughly: the largest shrinking of
-/// the box that the segment still hits, found by bisection of the slab test.
-bool hits(const dvec3& a, const dvec3& b, const dvec3& centre, const dvec3& half) {
-    double enter = 0, leave = 1;
-    for (int i = 0; i < 3; ++i) {
-        const double d = b[i] - a[i];
-        double t0 = (centre[i] - half[i] - a[i]) / d, t1 = (centre[i] + half[i] - a[i]) / d;
-        if (d == 0) {
-            if (std::abs(a[i] - centre[i]) > half[i]) return false;
-            continue;
-        }
-        if (t0 > t1) std::swap(t0, t1);
-        enter = std::max(enter, t0);
-        leave = std::min(leave, t1);
-    }
-    return enter <= leave;
-}
-
-/// A box of 2 × 1 × 2 m hovering over a floor of 16 × 16 m, and a grid of probes on the floor, all times `scale`.
-struct BoxOverFloor {
-    static constexpr int kGrid = 40;
-    SceneMaker maker;
-    std::vector<Probe> probes;
-    dvec3 centre, half;
-    double scale;
-    explicit BoxOverFloor(double s = 1)
-        : centre(dvec3(0.3, 2, -0.2) * s), half(dvec3(1, 0.5, 1) * s), scale(s) {
-        maker.primitive(PrimitiveShape::Plane, dvec3(16, 1, 16) * s, {0, 0, 0});
-        maker.primitive(PrimitiveShape::Box, dvec3(2, 1, 2) * s, centre);
-        for (int y = 0; y < kGrid; ++y)
-            for (int x = 0; x < kGrid; ++x)
-                probes.push_back(
-                    {dvec3((x + 0.5) / kGrid - 0.5, 0, (y + 0.5) / kGrid - 0.5) * 12.0 * s, kUp});
-    }
-    [[nodiscard]] ProbeOptions options() const {
-        ProbeOptions o;
-        o.eye = dvec3(0, 4, 12) * scale;
-        o.sceneRadius = 12 * scale;
-        return o;
-    }
-    /// 1 where the way to the light is free by `slack` metres, 0 where it is blocked by that much, -1 between.
-    [[nodiscard]] int truth(const dvec3& p, const dvec3& light, double slack) const {
-        if (hits(p, light, centre, half - slack)) return 0;
-        return hits(p, light, centre, half + slack) ? -1 : 1;
-    }
-};
 
 Light spotLight(float candela, float outer = 0.8f) {
     Light light;
@@ -405,98 +356,6 @@ TEST_P(ShadowsOnPoints, FogBehindAWallStaysDark) {
                 mean += double(s.visibility) / double(probes.size());
             EXPECT_LT(mean, converge ? 5e-3 : 1e-3) << "kind " << kind << ", converge " << converge;
         }
-}
-
-TEST_P(ShadowsOnPoints, MapsAreDrawnAgainOnlyWhereSomethingChanged) {
-    BoxOverFloor world;
-    const int first = world.maker.pointLight(10, {3, 5, 0}),
-              second = world.maker.pointLight(10, {-3, 5, 0});
-    const auto drawn = [&] {
-        const uint64_t before = lights().shadowMapsDrawn();
-        look(world.maker, world.probes, world.options());
-        return lights().shadowMapsDrawn() - before;
-    };
-    EXPECT_EQ(drawn(), 12u);
-    EXPECT_EQ(drawn(), 0u);
-    EXPECT_EQ(statusOf("shadow.maps"), "cached");
-    EXPECT_EQ(statusOf("lights.upload"), "cached");
-    world.maker.moveNode(second, {0.1, 0, 0});
-    EXPECT_EQ(drawn(), 6u) << "its own alone";
-    world.maker.moveNode(1, {0.1, 0, 0}); // the box
-    EXPECT_EQ(drawn(), 12u);
-    EXPECT_EQ(drawn(), 0u);
-    // A light that changes without any transform: its colour is no part of its maps.
-    world.maker.scene.lights[0].intensity = 20;
-    world.maker.scene.versions.lights = nextVersion();
-    EXPECT_EQ(drawn(), 0u);
-    EXPECT_EQ(statusOf("lights.upload"), "ran");
-    // Moving the camera leaves point lights alone.
-    ProbeOptions options = world.options();
-    options.eye.x += 1;
-    const uint64_t before = lights().shadowMapsDrawn();
-    look(world.maker, world.probes, options);
-    EXPECT_EQ(lights().shadowMapsDrawn(), before);
-    // Averaged frames shift their texel grids: all anew.
-    options.converge = true;
-    look(world.maker, world.probes, options);
-    EXPECT_EQ(lights().shadowMapsDrawn(), before + 12);
-    world.maker.scene.lights[size_t(world.maker.scene.nodes[size_t(first)].light)].castsShadows =
-        false;
-    world.maker.scene.versions.lights = nextVersion();
-    EXPECT_GE(drawn(), 6u);
-    EXPECT_EQ(lights().shadowPlan().views.size(), 6u);
-}
-
-TEST_P(ShadowsOnPoints, CachedMapsEqualFreshOnes) {
-    BoxOverFloor world;
-    const int lamp = world.maker.pointLight(10, {3, 5, 0});
-    world.maker.directionalLight(1, {0.2, -1, 0.1});
-    std::mt19937 random{uint32_t(seed())};
-    std::uniform_real_distribution<double> unit(-1, 1);
-    ProbeOptions options = world.options();
-    for (int step = 0; step < 6; ++step) {
-        if (step % 2)
-            world.maker.moveNode(lamp, dvec3(unit(random), 0, unit(random)));
-        else
-            options.eye += dvec3(unit(random), 0, unit(random)) * 2.0;
-        if (step == 4) lights().shadowSettings().localResolution = 256;
-        const std::vector<Seen> kept = look(world.maker, world.probes, options);
-        forgetEverything();
-        const std::vector<Seen> fresh = look(world.maker, world.probes, options);
-        for (size_t i = 0; i < kept.size(); ++i)
-            ASSERT_EQ(kept[i].lit, fresh[i].lit) << "step " << step << ", probe " << i;
-    }
-}
-
-TEST_P(ShadowsOnPoints, SkipsSayWhy) {
-    SceneMaker empty;
-    empty.pointLight(1, {0, 2, 0});
-    EXPECT_EQ(look(empty, {{{1, 0, 0}, {0, 0, 0}}})[0].visibility, 1.0f);
-    EXPECT_EQ(statusOf("shadow.maps"), "skipped: no surface in the scene");
-    BoxOverFloor world;
-    look(world.maker, world.probes, world.options());
-    EXPECT_EQ(statusOf("shadow.maps"), "skipped: no light casts a shadow");
-    world.maker.pointLight(10, {3, 5, 0});
-    world.maker.scene.lights[0].castsShadows = false;
-    const std::vector<Seen> seen = look(world.maker, world.probes, world.options());
-    for (const Seen& s : seen) EXPECT_EQ(s.visibility, 1.0f);
-    EXPECT_EQ(statusOf("shadow.maps"), "skipped: no light casts a shadow");
-}
-
-TEST_P(ShadowsOnPoints, TheLightsThatMatterMostGetShadows) {
-    BoxOverFloor world;
-    world.maker.pointLight(1, {0, 4, 30});
-    world.maker.pointLight(100, {0, 5, 0.1});
-    world.maker.pointLight(50, {0, 5, 0});
-    world.maker.pointLight(0.1f, {0, 5, 0});
-    lights().shadowSettings().maxLights = 2;
-    look(world.maker, world.probes, world.options());
-    std::vector<int> shadowed;
-    for (uint32_t i = 0; i < lights().lights().size(); ++i)
-        if (lights().lights()[i].shadowIndex >= 0) shadowed.push_back(int(i));
-    EXPECT_EQ(shadowed, (std::vector<int>{1, 2}));
-    ASSERT_EQ(lights().notes().size(), 1u);
-    EXPECT_EQ(lights().notes()[0], "2 of 4 lights cast no shadows: shadows.maxLights is 2");
 }
 
 } // namespace
