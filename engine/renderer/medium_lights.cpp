@@ -37,6 +37,26 @@ ivec3 cellOf(const ivec3& brick, int i) {
 /// Points 1/4 and 3/4 along each edge: a trilinear field that is not 0 in the cell is not 0 at one of them.
 dvec3 innerPoint(int i) { return dvec3(i & 1, (i >> 1) & 1, i >> 2) * 0.5 + 0.25; }
 
+/// Maps `u` in the unit cube to a point of it: half by half along each axis, so that eighth e (innerPoint's order) is met with the
+/// probability `chance`, in proportion to `weights[e]` but for a least part; evenly within it.
+dvec3 chooseEighth(const double (&weights)[8], dvec3 u, double& chance) {
+    double sum = 0, left[8];
+    for (const double weight : weights) sum += weight;
+    for (int e = 0; e < 8; ++e) left[e] = sum > 0 ? weights[e] + kLeastEighth * sum : 1;
+    chance = 1;
+    for (int axis = 0; axis < 3; ++axis) {
+        double halves[2] = {};
+        for (int e = 0; e < 8; ++e) halves[(e >> axis) & 1] += left[e];
+        const double lower = halves[0] / (halves[0] + halves[1]);
+        const int upper = u[axis] < lower ? 0 : 1;
+        chance *= upper ? 1 - lower : lower;
+        u[axis] = 0.5 * upper + 0.5 * (upper ? (u[axis] - lower) / (1 - lower) : u[axis] / lower);
+        for (int e = 0; e < 8; ++e)
+            if (((e >> axis) & 1) != upper) left[e] = 0;
+    }
+    return u;
+}
+
 } // namespace
 
 MediumEmitter::MediumEmitter(const Medium& medium, const dmat4& worldFromNode, int parts)
@@ -234,15 +254,14 @@ dvec3 MediumEmitter::emittedFrom(const Part& part, double u, const dvec3& inCell
     }
     if (chosen < 0) return dvec3(0);
     const dvec3 corner(cellOf(brick.index, chosen));
-    // A flame grows tenfold within a cell: one of its eighths, by what its middle emits, and never without a chance.
-    double eighths[8], sum = 0;
-    for (int e = 0; e < 8; ++e) sum += eighths[e] = meanOf(emission(corner + innerPoint(e)));
-    const double least = sum > 0 ? kLeastEighth * sum : 1.0; // all light from a face: any eighth
-    double rest = std::clamp(left / double(powers[chosen]), 0.0, 1.0) * (sum + 8 * least);
-    int eighth = 0;
-    while (eighth < 7 && rest >= eighths[eighth] + least) rest -= eighths[eighth++] + least;
-    const double chance = (eighths[eighth] + least) / (sum + 8 * least);
-    cell = corner + innerPoint(eighth) + 0.5 * inCell - 0.25;
+    // A flame grows tenfold within a cell: its eighths are drawn by what their middles emit, and never without a chance.
+    // Shapes end abruptly, and one point of an eighth says nothing of the rest: all alike.
+    double chances[8];
+    for (int e = 0; e < 8; ++e)
+        chances[e] =
+            medium_.kind == MediumKind::Grid ? meanOf(emission(corner + innerPoint(e))) : 1;
+    double chance = 0;
+    cell = corner + chooseEighth(chances, inCell, chance);
     return emission(cell) * (cellVolume_ / 8 * part.power / (double(powers[chosen]) * chance));
 }
 
