@@ -1,0 +1,22 @@
+#pragma once
+// The lattice's parameters as its shaders take them.
+
+#include "shared/lpv.h"
+#include "volumetric_gi/lpv/lattice_directions.h"
+
+namespace tyndall::volumetric_gi {
+
+/// `repeats`: bit a where what leaves along axis a comes in again on the other side.
+[[nodiscard]] inline gpu::LpvParams latticeParams(const ivec3& size, int repeats) {
+    gpu::LpvParams params{};
+    params.size = {size, repeats};
+    for (size_t j = 0; j < kLatticeDirections; ++j) {
+        const LatticeDirection& d = latticeDirections()[j];
+        params.directions[j].unit = vec4(vec3(d.unit), float(d.weight));
+        params.directions[j].offset = {d.offset, d.lengthClass};
+        params.classWeights[d.lengthClass] += float(d.weight);
+    }
+    return params;
+}
+
+} // namespace tyndall::volumetric_gi

@@ -1,0 +1,58 @@
+// What arrives in a cell of the lattice in a step: from its neighbours, from the surfaces around it, and from sources.
+#ifndef TYNDALL_GI_LPV_GATHER
+#define TYNDALL_GI_LPV_GATHER
+#include "gi/lpv/lattice.glsl"
+
+layout(std430) readonly buffer LpvSources { vec4 sources[]; };
+layout(std430) readonly buffer LpvLinks { uvec2 links[]; };
+layout(std430) readonly buffer LpvFlux { float flux[]; };
+
+/// Light of three channels; xyz: first moment (power times mean direction), w: power.
+struct Arrival {
+    vec4 red;
+    vec4 green;
+    vec4 blue;
+};
+
+vec3 fluxOf(uint cell, uint cells, uint j) {
+    return vec3(flux[(3u * j) * cells + cell], flux[(3u * j + 1u) * cells + cell], flux[(3u * j + 2u) * cells + cell]);
+}
+
+void addLight(inout Arrival a, vec3 power, vec3 direction) {
+    a.red += power.r * vec4(direction, 1.0);
+    a.green += power.g * vec4(direction, 1.0);
+    a.blue += power.b * vec4(direction, 1.0);
+}
+
+vec3 reflectance(uint bits) {
+    const uint most = (1u << kLpvReflectanceBits) - 1u;
+    return vec3(bits & most, (bits >> kLpvReflectanceBits) & most, (bits >> (2u * kLpvReflectanceBits)) & most) / float(most);
+}
+
+Arrival gatherLight(ivec3 at, uint cells) {
+    uint self = cellIndex(at);
+    Arrival a = Arrival(sources[(kLpvEntering + 0u) * cells + self], sources[(kLpvEntering + 1u) * cells + self],
+                        sources[(kLpvEntering + 2u) * cells + self]);
+    uint blocked = links[self].x;
+    vec3 back = vec3(0.0);   // what the cell sent towards surfaces around it
+    vec3 normal = vec3(0.0); // of these, from the directions that they block
+    for (uint j = 0u; j < kLpvDirections; ++j) {
+        vec4 d = params.directions[j].unit;
+        if ((blocked & (1u << j)) != 0u) {
+            back += fluxOf(self, cells, j);
+            normal -= d.w * d.xyz;
+        }
+        // Direction 25 - j is the opposite one: what stands between two cells blocks both ways.
+        ivec3 from = at - params.directions[j].offset.xyz;
+        if ((blocked & (1u << (25u - j))) != 0u || !wrapCell(from)) continue;
+        addLight(a, fluxOf(cellIndex(from), cells, j), d.xyz);
+    }
+    if (blocked != 0u) {
+        float size = length(normal);
+        // Lambert's mean direction; none where surfaces on opposite sides cancel.
+        addLight(a, back * reflectance(links[self].y), size > 1e-6 ? normal * (2.0 / 3.0 / size) : vec3(0.0));
+    }
+    return a;
+}
+
+#endif

@@ -1,0 +1,80 @@
+// The lattice of light: its arrays, its neighbours, and the lobe that a cell's light leaves with.
+#ifndef TYNDALL_GI_LPV_LATTICE
+#define TYNDALL_GI_LPV_LATTICE
+#include "common/math.glsl"
+#include "shared/lpv.h"
+
+layout(std140) uniform Params { LpvParams params; };
+
+uint cellCount() { return uint(params.size.x * params.size.y * params.size.z); }
+uint cellIndex(ivec3 at) { return uint(at.x + params.size.x * (at.y + params.size.y * at.z)); }
+
+/// The cell `at`, brought back in along axes that repeat; false where there is none.
+bool wrapCell(inout ivec3 at) {
+    ivec3 size = params.size.xyz;
+    bvec3 repeats = bvec3(params.size.w & 1, params.size.w & 2, params.size.w & 4);
+    bvec3 outside = bvec3(uvec3(greaterThanEqual(uvec3(at), uvec3(size))));
+    if (any(outside) && any(bvec3(outside.x && !repeats.x, outside.y && !repeats.y, outside.z && !repeats.z))) return false;
+    at = at + size * ivec3(lessThan(at, ivec3(0))) - size * ivec3(greaterThanEqual(at, size));
+    return true;
+}
+
+/// Part of a lobe that leaves in direction `unit`, over the direction's weight.
+float lobeTowards(vec4 lobe, vec3 unit) { return max(dot(lobe.xyz, unit) + lobe.w, 0.0); }
+
+/// Sums over the directions of a lobe's power, and of its power in each class.
+struct LobeSums {
+    float power;
+    vec3 moment;
+    vec3 classes;
+    float used; // weight of the directions that get light
+};
+
+LobeSums sumLobe(vec4 lobe) {
+    LobeSums s = LobeSums(0.0, vec3(0.0), vec3(0.0), 0.0);
+    for (uint j = 0u; j < kLpvDirections; ++j) {
+        vec4 d = params.directions[j].unit;
+        float f = d.w * lobeTowards(lobe, d.xyz);
+        s.moment += f * d.xyz;
+        s.used += f > 0.0 ? d.w : 0.0;
+        s.classes[params.directions[j].offset.w] += f;
+    }
+    s.power = s.classes.x + s.classes.y + s.classes.z;
+    return s;
+}
+
+const float kNarrowestLobe = 0.88; // 26 directions hold no narrower one evenly
+
+/// The lobe of light of this power and first moment. Linear in the cosine while that is nowhere negative; then the part of a line above
+/// 0 that has the same first moment: exactly on the sphere, and after two steps of Newton's method nearly so among 26 directions. Where a
+/// lobe comes out too narrow, more directions come in, lest it sharpen itself from step to step (LatticeModel::lobe).
+vec4 makeLobe(float power, vec3 moment, out vec3 classes) {
+    classes = vec3(0.0);
+    if (!(power > 0.0)) return vec4(0.0);
+    float size = length(moment);
+    float r = size / power;
+    bool linear = r <= 1.0 / 3.0;
+    float narrow = min(r, kNarrowestLobe);
+    vec3 along = size > 0.0 ? moment / size : vec3(0.0);
+    vec4 lobe = linear ? vec4(moment * (3.0 / power), 1.0) : vec4(along, 2.0 - 3.0 * narrow);
+    LobeSums s = sumLobe(lobe);
+    // A loop rather than a condition: drivers that run both sides of conditions leave a loop that nobody needs.
+    int passes = linear ? 0 : 2;
+    for (int pass = 0; pass < passes; ++pass) {
+        vec3 missing = narrow * s.power * along - s.moment;
+        lobe.xyz += 3.0 / s.used * missing;
+        lobe.w += 2.0 * max(-dot(missing, along) / s.power, 0.0);
+        s = sumLobe(lobe);
+    }
+    float scale = power / s.power;
+    classes = s.classes * scale;
+    return lobe * scale;
+}
+
+/// (1 - e^-x)/x, from x and e^-x. Cancels for small x: there a series.
+vec3 meanTransmittance(vec3 x, vec3 transmittance) {
+    vec3 series = 1.0 - x * (0.5 - x * (1.0 / 6.0 - x * (1.0 / 24.0)));
+    return mix((1.0 - transmittance) / max(x, vec3(1e-20)), series, lessThan(x, vec3(0.03)));
+}
+
+#endif

@@ -1,0 +1,40 @@
+// The light propagation lattice as shaders see it. Cells go along x fastest, then y, then z. An array holds one value of all cells,
+// then the next value of all cells: plane after plane, `array[plane * cellCount + cell]`.
+#ifndef TYNDALL_SHARED_LPV_H
+#define TYNDALL_SHARED_LPV_H
+#include "shared/types.h"
+TYNDALL_SHARED_BEGIN
+
+TYNDALL_CONST uint kLpvDirections = 26u; // x fastest, from -1 to 1
+TYNDALL_CONST uint kLpvClasses = 3u;     // of directions: across a face, an edge, a corner
+
+// LpvFlux, floats: power that a cell sends in direction j in a step, of channel c: plane 3 j + c.
+TYNDALL_CONST uint kLpvFluxPlanes = 78u;
+
+// LpvMedium
+TYNDALL_CONST uint kLpvPassed = 0u; // 3, rgb of each class: e^(-σ l), the part that crosses the cell
+TYNDALL_CONST uint kLpvDepth = 3u;  // rgb: transport extinction times the cell's edge
+TYNDALL_CONST uint kLpvAlbedo = 4u; // rgb: transport scattering over transport extinction
+TYNDALL_CONST uint kLpvMediumVectors = 5u;
+
+// LpvSources, a step
+TYNDALL_CONST uint kLpvEntering = 0u; // 3, of red, green, blue; xyz: first moment, w: power of light that enters the cell
+TYNDALL_CONST uint kLpvEmission = 3u; // rgb: power sent out from within the cell to all sides
+TYNDALL_CONST uint kLpvSourceVectors = 4u;
+
+// LpvLinks: x, bit j: a surface stands in the way to the neighbour in direction j; y: its reflectance, 10 bits a channel
+TYNDALL_CONST uint kLpvReflectanceBits = 10u;
+
+struct LpvDirection {
+    vec4 unit;    // w: weight in a mean over the sphere
+    ivec4 offset; // w: class
+};
+
+struct LpvParams {
+    ivec4 size;   // cells along each axis; w: bit a: what leaves along axis a comes in again on the other side
+    vec4 classWeights; // of all directions of a class together
+    LpvDirection directions[26];
+};
+
+TYNDALL_SHARED_END
+#endif
