@@ -13,7 +13,7 @@
 namespace tyndall::plugin {
 
 /// Raised by one whenever anything that crosses the boundary changes its meaning or layout.
-inline constexpr uint32_t kAbiVersion = 1;
+inline constexpr uint32_t kAbiVersion = 2;
 
 /// One technique that a plugin offers: the name that `--gi` takes, and the terms that it computes.
 struct TechniqueInfo {
@@ -46,7 +46,46 @@ protected:
 struct SceneChange {
     uint64_t geometry, materials, lights, media, environment;
     uint32_t lightCount, mediumCount;
-    float boundsMinimum[4], boundsMaximum[4]; // of the scene, render space
+    float boundsMinimum[4],
+        boundsMaximum
+            [4]; // of surfaces and of media with an end, render space; minimum > maximum: nothing
+};
+
+/// A square picture of the surfaces from a point or, where `yfov` is 0, along parallel rays. It looks along -Z of `renderFromView`,
+/// which has no scale.
+struct SurfaceView {
+    mat4 renderFromView;
+    float yfov;       // radians
+    float halfHeight; // metres, parallel
+    float nearest;    // metres before which nothing is drawn; perspective
+    float depthRange; // metres, parallel
+    int32_t side;     // pixels
+};
+
+/// The triangles of one object, in its own space: what compute shaders read.
+struct SurfaceTriangles {
+    fg::StaticBuffer vertices;   // floats; a vertex begins with its position
+    fg::StaticBuffer indices;    // three a triangle
+    fg::StaticTexture baseColor; // of its material; white where that has none
+    uint32_t strideFloats, triangleCount;
+    uint32_t object; // of `Objects` (shared/object.h), which names the material
+};
+
+/// The scene's surfaces from anywhere: what reflective shadow maps and voxels are made of. Good until the frame has been executed.
+class SurfaceDrawer {
+public:
+    /// Of all opaque and alpha-tested surfaces.
+    virtual uint32_t triangleSetCount() const = 0;
+    virtual SurfaceTriangles triangles(uint32_t set) const = 0;
+    virtual fg::StaticBuffer objects() const = 0;   // ObjectData[]
+    virtual fg::StaticBuffer materials() const = 0; // MaterialData[]
+
+    /// Adds a pass of this name (a literal). Both sides of all surfaces are drawn. `view`: for bindView(), to get back from pixels to rays.
+    virtual GBuffer addGBuffer(fg::FrameGraph& graph, const char* name, const SurfaceView& from,
+                               ViewResources& view) = 0;
+
+protected:
+    ~SurfaceDrawer() = default;
 };
 
 /// This frame, as far as a technique sees it.
@@ -56,6 +95,9 @@ struct FrameInputs {
     LightResources lights;
     MediaResources media;
     SceneChange scene;
+    const gpu::LightData*
+        lightData; // `lights.lightCount` of them, as on the GPU; until the frame is recorded
+    SurfaceDrawer* surfaces;
     TermSet terms; // that the plan gives to this plugin
 };
 

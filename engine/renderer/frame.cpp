@@ -111,8 +111,14 @@ FrameImages recordFrame(fg::FrameGraph& graph, const FrameParts& parts, const Fr
     images.terms = addDirectTerms(graph, surfaces, march);
 
     // Indirect light, as far as techniques compute it.
-    plugin::FrameInputs inputs{order.view,      images.gbuffer,    lights,
-                               media.resources, order.sceneChange, 0};
+    plugin::FrameInputs inputs{order.view,
+                               images.gbuffer,
+                               lights,
+                               media.resources,
+                               order.sceneChange,
+                               parts.lights.lights().data(),
+                               &parts.drawer,
+                               0};
     addTechniques(graph, parts, order, inputs, march.transmittance, images.terms);
 
     // Transparent surfaces, then the sum of all terms.

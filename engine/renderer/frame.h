@@ -23,6 +23,7 @@ struct FrameParts {
     BlendList& blended;
     EnvironmentMap& environment;
     plugin::PluginRegistry& plugins;
+    plugin::SurfaceDrawer& drawer;
     const GBufferSettings& gbufferSettings;
     const SurfaceLightSettings& surfaceLightSettings;
     const PostSettings& postSettings;

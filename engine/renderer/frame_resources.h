@@ -31,9 +31,10 @@ struct LightResources {
     fg::TextureHandle
         opticalDepth; // light-space optical depth of the grid media; absent without grids
     fg::BufferHandle opticalDepthViews;
-    uint32_t lightCount = 0; // with environment samples
+    uint32_t lightCount = 0;      // with environment samples
     uint32_t sceneLightCount = 0; // without them
-    bool softShadows = true; // the define SOFT_SHADOWS: a shadow of this frame has a penumbra that is looked for
+    bool softShadows =
+        true; // the define SOFT_SHADOWS: a shadow of this frame has a penumbra that is looked for
 };
 
 struct MediaResources {

@@ -9,13 +9,14 @@ struct GBufferData {
     const GpuScene* scene;
     ViewResources view;
     float textureLodBias;
+    bool bothSides;
     GBuffer gbuffer;
 };
 
-fg::RasterState stateOf(const DrawItem& item) {
+fg::RasterState stateOf(const DrawItem& item, bool bothSides) {
     fg::RasterState state;
     // One-sided surfaces are invisible from behind to the camera, and to nothing else.
-    state.cull = item.doubleSided ? fg::CullMode::None : fg::CullMode::Back;
+    state.cull = item.doubleSided || bothSides ? fg::CullMode::None : fg::CullMode::Back;
     state.depth = fg::DepthMode::TestAndWrite;
     state.compare = fg::CompareMode::Greater;
     state.topology = item.topology;
@@ -53,7 +54,7 @@ void drawMode(const GBufferData& data, AlphaMode mode, fg::PassContext& context)
     forEachVisibleRun(items, planes, [&](const DrawRun& run) {
         const DrawItem& item = *run.first;
         if (!last || !sameState(*last, item)) {
-            command.state(stateOf(item));
+            command.state(stateOf(item, data.bothSides));
             command.set("isTriangle", item.topology == fg::Topology::Triangles ? 1 : 0);
         }
         if (!last || last->material != item.material)
@@ -67,16 +68,17 @@ void drawMode(const GBufferData& data, AlphaMode mode, fg::PassContext& context)
 } // namespace
 
 GBuffer addGBufferPass(fg::FrameGraph& graph, const GpuScene& scene, const ViewResources& view,
-                       const GBufferSettings& settings) {
+                       const GBufferSettings& settings, const char* name, bool bothSides) {
     return graph
         .addPass<GBufferData>(
-            "gbuffer",
+            name,
             [&](fg::Builder& builder, GBufferData& data) {
                 data.scene = &scene;
                 data.view = view;
                 data.textureLodBias = settings.textureLodBias;
-                const auto create = [&](const char* name, fg::Format format, fg::Access access) {
-                    return builder.create(name, fg::texture2D(format, view.width, view.height),
+                data.bothSides = bothSides;
+                const auto create = [&](const char* texture, fg::Format format, fg::Access access) {
+                    return builder.create(texture, fg::texture2D(format, view.width, view.height),
                                           access);
                 };
                 data.gbuffer.depth =

@@ -10,8 +10,10 @@ namespace tyndall {
 
 /// Opaque and alpha-tested surfaces, lines and points of `scene` as the camera sees them. Where nothing is, depth is 0.
 /// `scene` must stay unchanged until the graph was executed.
+/// `bothSides`: one-sided surfaces are seen from behind, too, as light sees them.
 GBuffer addGBufferPass(fg::FrameGraph& graph, const GpuScene& scene, const ViewResources& view,
-                       const GBufferSettings& settings);
+                       const GBufferSettings& settings, const char* name = "gbuffer",
+                       bool bothSides = false);
 
 /// Binds the five textures of a material; the names are those of shaders/gbuffer/surface.glsl.
 inline void bindMaterial(fg::PassContext& context, const MaterialTextures& textures) {

@@ -68,6 +68,10 @@ public:
     [[nodiscard]] const MaterialTextures& textures(uint32_t material) const {
         return materialTextures_.at(material);
     }
+    /// What an item of items() is drawn from.
+    [[nodiscard]] MeshUpload::Buffers buffers(const DrawItem& item) const {
+        return meshes_.buffers(item.mesh);
+    }
     [[nodiscard]] fg::StaticBuffer objects() const { return objects_; }     // `Objects`
     [[nodiscard]] fg::StaticBuffer materials() const { return materials_; } // `Materials`
     [[nodiscard]] std::span<const gpu::ObjectData> objectData() const { return objectData_; }

@@ -90,6 +90,7 @@ Result<fg::StaticGeometry> MeshUpload::obtain(const Scene& scene, int index) {
     desc.attributes = packed.attributes;
     desc.indices = entry.indices;
     entry.geometry = executor_.registerGeometry(name, desc);
+    entry.strideFloats = packed.strideFloats;
     entry.version = mesh.version;
     entry.source = mesh.positions.data();
     return entry.geometry;

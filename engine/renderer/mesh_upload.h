@@ -33,6 +33,15 @@ public:
     /// The geometry of mesh `index`, made again if the mesh's version is another; null for a mesh without indices.
     /// Errors: no room on the GPU.
     Result<fg::StaticGeometry> obtain(const Scene& scene, int index);
+    /// Vertices and indices of a mesh that obtain() has returned a geometry for.
+    struct Buffers {
+        fg::StaticBuffer vertices, indices;
+        uint32_t strideFloats = 0;
+    };
+    [[nodiscard]] Buffers buffers(int index) const {
+        const Entry& entry = entries_.at(size_t(index));
+        return {entry.vertices, entry.indices, entry.strideFloats};
+    }
     /// Forgets meshes that the scene no longer has.
     void trim(size_t meshCount);
 
@@ -43,6 +52,7 @@ private:
             nullptr; // the mesh's positions: another scene may bring the same version number
         fg::StaticGeometry geometry;
         fg::StaticBuffer vertices, indices;
+        uint32_t strideFloats = 0;
     };
     void release(Entry& entry);
     fg::Executor& executor_;

@@ -64,6 +64,7 @@ Result<void> Renderer::Impl::updateScene(const FrameRequest& request, const dmat
 
     surfaces.setAnisotropy(gbufferSettings.anisotropy);
     if (Result<void> done = surfaces.update(*scene, renderOrigin); !done) return done;
+    drawer.update();
     if (Result<void> done = media.update(*scene, renderOrigin); !done) return done;
     if (Result<void> done = environment.update(*scene); !done) return done;
     if (Result<void> done = blended.update(surfaces, order.view); !done) return done;
@@ -169,6 +170,12 @@ Result<FrameResult> Renderer::renderFrame(const FrameRequest& request) {
                            uint32_t(r.scene->media.size()),
                            {},
                            {}};
+    for (int axis = 0; axis < 3; ++axis) {
+        r.order.sceneChange.boundsMinimum[axis] =
+            float(r.sceneBounds.minimum[axis] - r.renderOrigin[axis]);
+        r.order.sceneChange.boundsMaximum[axis] =
+            float(r.sceneBounds.maximum[axis] - r.renderOrigin[axis]);
+    }
     for (size_t i = 0; i < r.plugins.count(); ++i)
         r.plugins.plugin(i).sceneChanged(r.order.sceneChange);
 
@@ -180,7 +187,7 @@ Result<FrameResult> Renderer::renderFrame(const FrameRequest& request) {
     }
     fg::FrameGraph& graph = r.executor.beginFrame();
     r.images = recordFrame(graph,
-                           {r.surfaces, r.lights, r.media, r.blended, r.environment, r.plugins,
+                           {r.surfaces, r.lights, r.media, r.blended, r.environment, r.plugins, r.drawer,
                             r.gbufferSettings, r.surfaceLightSettings, r.postSettings},
                            r.order);
     r.inspected = {};

@@ -7,6 +7,7 @@
 #include "renderer/frame.h"
 #include "renderer/inspect_pass.h"
 #include "renderer/renderer.h"
+#include "renderer/surface_drawer.h"
 
 namespace tyndall {
 
@@ -42,6 +43,7 @@ struct Renderer::Impl {
 
     SettingsRegistry settings;
     GBufferSettings gbufferSettings{};
+    GpuSurfaceDrawer drawer{surfaces, gbufferSettings};
     SurfaceLightSettings surfaceLightSettings{};
     PostSettings postSettings{};
     ConvergeSettings convergeSettings{};

@@ -2,6 +2,7 @@
 
 #include "plugin/plugin_api.h"
 
+#include "volumetric_gi/lpv/lpv_technique.h"
 #include "volumetric_gi/octaves/octaves_pass.h"
 
 namespace tyndall::volumetric_gi {
@@ -11,7 +12,11 @@ constexpr plugin::TechniqueInfo kTechniques[] = {
     {"octaves", "Octaves of multiple scattering",
      "Baseline: multiple scattering as reduced copies of single scattering, inside the march.",
      terms(Term::LVVE, Term::LXVVE)},
+    {"lpv", "Light propagation volume",
+     "Light that surfaces reflect and media scatter, propagated in a lattice: all indirect light.",
+     kIndirectOnSurfaces | kIndirectInMedia},
 };
+constexpr uint32_t kLpv = 1; // index in the table
 constexpr plugin::PluginInfo kInfo{"volumetric_gi", "0.1.0",
                                    "Global illumination in scenes with participating media.",
                                    kTechniques, uint32_t(std::size(kTechniques))};
@@ -20,16 +25,17 @@ class VolumetricGi final : public plugin::Plugin {
 public:
     const plugin::PluginInfo& info() const override { return kInfo; }
 
-    uint32_t settingsGroupCount() const override { return 1; }
-    void settingsGroup(uint32_t, const SettingDesc** fields, uint32_t* count,
+    uint32_t settingsGroupCount() const override { return 2; }
+    void settingsGroup(uint32_t index, const SettingDesc** fields, uint32_t* count,
                        void** values) override {
-        *fields = octavesSettings().data();
-        *count = uint32_t(octavesSettings().size());
-        *values = &octaves_;
+        const std::span<const SettingDesc> all = index == 0 ? octavesSettings() : lpvSettings();
+        *fields = all.data();
+        *count = uint32_t(all.size());
+        *values = index == 0 ? static_cast<void*>(&octaves_) : &lpv_.settings();
     }
     void presets(const PresetEntry** entries, uint32_t* count) const override {
-        *entries = octavesPresets().data();
-        *count = uint32_t(octavesPresets().size());
+        *entries = presets_.data();
+        *count = uint32_t(presets_.size());
     }
 
     bool setup(plugin::Host&, char*, uint32_t) override {
@@ -38,8 +44,9 @@ public:
     void sceneChanged(const plugin::SceneChange&) override {
     } // the march reads everything anew each frame
 
-    plugin::FrameOutputs addPasses(fg::FrameGraph& graph, uint32_t,
+    plugin::FrameOutputs addPasses(fg::FrameGraph& graph, uint32_t technique,
                                    const plugin::FrameInputs& inputs) override {
+        if (technique == kLpv) return lpv_.addPasses(graph, inputs);
         return {.inScatter = addOctavesPass(graph, inputs, octaves_), .surfaceRadiance = {}};
     }
     fg::TextureHandle addPostPasses(fg::FrameGraph&, const plugin::FrameInputs&,
@@ -50,6 +57,12 @@ public:
 
 private:
     OctavesSettings octaves_{};
+    LpvTechnique lpv_;
+    std::vector<PresetEntry> presets_ = [] {
+        std::vector<PresetEntry> all(octavesPresets().begin(), octavesPresets().end());
+        all.insert(all.end(), lpvPresets().begin(), lpvPresets().end());
+        return all;
+    }();
 };
 
 } // namespace

@@ -28,4 +28,10 @@ float phaseFunction(uint kind, float g, float cosTheta) {
     return henyeyGreenstein(g, cosTheta);
 }
 
+/// Mean cosine of the angle of scattering (Cornette and Shanks 1992, equation 9).
+float phaseMeanCosine(uint kind, float g) {
+    if (kind == kPhaseRayleigh) return 0.0;
+    return kind == kPhaseCornetteShanks ? 3.0 * g * (4.0 + g * g) / (5.0 * (2.0 + g * g)) : g;
+}
+
 #endif

@@ -15,15 +15,24 @@ TYNDALL_CONST uint kLpvFluxPlanes = 78u;
 TYNDALL_CONST uint kLpvPassed = 0u; // 3, rgb of each class: e^(-σ l), the part that crosses the cell
 TYNDALL_CONST uint kLpvDepth = 3u;  // rgb: transport extinction times the cell's edge
 TYNDALL_CONST uint kLpvAlbedo = 4u; // rgb: transport scattering over transport extinction
-TYNDALL_CONST uint kLpvMediumVectors = 5u;
+TYNDALL_CONST uint kLpvTrueDepth = 5u;  // rgb: extinction times the cell's edge; w: mean cosine of the phase functions
+TYNDALL_CONST uint kLpvTrueAlbedo = 6u; // rgb: scattering over extinction
+TYNDALL_CONST uint kLpvMediumVectors = 7u;
 
 // LpvSources, a step
 TYNDALL_CONST uint kLpvEntering = 0u; // 3, of red, green, blue; xyz: first moment, w: power of light that enters the cell
 TYNDALL_CONST uint kLpvEmission = 3u; // rgb: power sent out from within the cell to all sides
 TYNDALL_CONST uint kLpvSourceVectors = 4u;
 
-// LpvLinks: x, bit j: a surface stands in the way to the neighbour in direction j; y: its reflectance, 10 bits a channel
-TYNDALL_CONST uint kLpvReflectanceBits = 10u;
+// LpvDeposits, integers: the same in fixed point, plane 4 c + 0…2: first moment, 4 c + 3: power of channel c; 12 + c: emission
+TYNDALL_CONST uint kLpvDepositPlanes = 15u;
+
+// LpvLinks
+TYNDALL_CONST uint kLpvBlocked = 0u;     // bit j: a surface stands in the way to the neighbour in direction j
+TYNDALL_CONST uint kLpvReflectance = 1u; // 3, of red, green, blue: sum over the surfaces, in units of 1/kLpvReflectanceUnit
+TYNDALL_CONST uint kLpvSurfaces = 4u;    // how many crossings are in that sum
+TYNDALL_CONST uint kLpvLinkPlanes = 5u;
+TYNDALL_CONST uint kLpvReflectanceUnit = 1024u;
 
 struct LpvDirection {
     vec4 unit;    // w: weight in a mean over the sphere
@@ -31,9 +40,27 @@ struct LpvDirection {
 };
 
 struct LpvParams {
-    ivec4 size;   // cells along each axis; w: bit a: what leaves along axis a comes in again on the other side
+    ivec4 size;        // cells along each axis; w: bit a: what leaves along axis a comes in again on the other side
+    vec4 lowest;       // corner of the lattice, render space; w: edge of a cell, metres
     vec4 classWeights; // of all directions of a class together
     LpvDirection directions[26];
+};
+
+/// Of one object's triangles.
+struct LpvTriangles {
+    uint strideFloats;
+    uint count;
+    uint object;
+    uint padding0;
+};
+
+/// Of one reflective shadow map.
+struct LpvInjectParams {
+    vec4 scale;      // rgb: fixed-point units for a unit of power
+    uint light;      // index into `Lights`
+    float share;     // of the light's power that this map's point of the light stands for
+    float texelArea; // m², parallel views; 0: a perspective view, whose texels have solid angles
+    float radius;    // metres around the light's point in which nothing is lit: a lamp's own ball
 };
 
 TYNDALL_SHARED_END

@@ -30,7 +30,7 @@ public:
         program_ = *found;
         std::vector<vec4> medium(cells_ * gpu::kLpvMediumVectors),
             sources(cells_ * gpu::kLpvSourceVectors);
-        std::vector<uvec2> links(cells_);
+        std::vector<uint32_t> links(cells_ * gpu::kLpvLinkPlanes);
         for (size_t i = 0; i < cells_; ++i) {
             const int n = int(i);
             const LatticeCell& cell =
@@ -45,8 +45,11 @@ public:
                     kShares[c] * vec4(vec3(cell.entering.moment), float(cell.entering.power));
             sources[gpu::kLpvEmission * cells_ + i] =
                 float(cell.emission) * vec4(kShares[0], kShares[1], kShares[2], 0);
-            const uint32_t most = (1u << gpu::kLpvReflectanceBits) - 1;
-            links[i] = {cell.blocked, uint32_t(std::lround(cell.reflectance * most)) * 0x100401u};
+            links[gpu::kLpvBlocked * cells_ + i] = cell.blocked;
+            links[gpu::kLpvSurfaces * cells_ + i] = 2;
+            for (uint32_t c = 0; c < 3; ++c)
+                links[(gpu::kLpvReflectance + c) * cells_ + i] =
+                    uint32_t(std::lround(2 * cell.reflectance * gpu::kLpvReflectanceUnit));
         }
         medium_ = gl::Buffer("medium", std::as_bytes(std::span(medium)));
         sources_ = gl::Buffer("sources", std::as_bytes(std::span(sources)));
@@ -119,7 +122,7 @@ LatticeModel randomLattice(const ivec3& size, bool repeats, double densest, doub
         cell.entering.power = std::pow(10, 4 * unit(random) - 2);
         const dvec3 direction(unit(random) - 0.5, unit(random) - 0.5, unit(random) - 0.5);
         cell.entering.moment = glm::normalize(direction) * cell.entering.power * unit(random);
-        cell.reflectance = std::round(unit(random) * 1023) / 1023;
+        cell.reflectance = std::round(unit(random) * 1024) / 1024;
         for (uint32_t j = 0; j < 13; ++j) { // each way once, and its other end with it
             const ivec3 to = at + directions[j].offset;
             if (unit(random) >= blocked || glm::any(glm::lessThan(to, ivec3(0))) ||

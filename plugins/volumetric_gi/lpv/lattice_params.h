@@ -6,10 +6,12 @@
 
 namespace tyndall::volumetric_gi {
 
-/// `repeats`: bit a where what leaves along axis a comes in again on the other side.
-[[nodiscard]] inline gpu::LpvParams latticeParams(const ivec3& size, int repeats) {
+/// `lowest`: corner in render space, `cell`: edge in metres; `repeats`: bit a where what leaves along axis a comes in again on the other side.
+[[nodiscard]] inline gpu::LpvParams latticeParams(const ivec3& size, int repeats,
+                                                  const vec3& lowest = vec3(0), float cell = 1) {
     gpu::LpvParams params{};
     params.size = {size, repeats};
+    params.lowest = {lowest, cell};
     for (size_t j = 0; j < kLatticeDirections; ++j) {
         const LatticeDirection& d = latticeDirections()[j];
         params.directions[j].unit = vec4(vec3(d.unit), float(d.weight));

@@ -4,7 +4,7 @@
 #include "gi/lpv/lattice.glsl"
 
 layout(std430) readonly buffer LpvSources { vec4 sources[]; };
-layout(std430) readonly buffer LpvLinks { uvec2 links[]; };
+layout(std430) readonly buffer LpvLinks { uint links[]; };
 layout(std430) readonly buffer LpvFlux { float flux[]; };
 
 /// Light of three channels; xyz: first moment (power times mean direction), w: power.
@@ -24,16 +24,17 @@ void addLight(inout Arrival a, vec3 power, vec3 direction) {
     a.blue += power.b * vec4(direction, 1.0);
 }
 
-vec3 reflectance(uint bits) {
-    const uint most = (1u << kLpvReflectanceBits) - 1u;
-    return vec3(bits & most, (bits >> kLpvReflectanceBits) & most, (bits >> (2u * kLpvReflectanceBits)) & most) / float(most);
+/// Mean of the surfaces around a cell.
+vec3 reflectance(uint cell, uint cells) {
+    vec3 sum = vec3(links[kLpvReflectance * cells + cell], links[(kLpvReflectance + 1u) * cells + cell], links[(kLpvReflectance + 2u) * cells + cell]);
+    return sum / float(max(links[kLpvSurfaces * cells + cell], 1u) * kLpvReflectanceUnit);
 }
 
 Arrival gatherLight(ivec3 at, uint cells) {
     uint self = cellIndex(at);
     Arrival a = Arrival(sources[(kLpvEntering + 0u) * cells + self], sources[(kLpvEntering + 1u) * cells + self],
                         sources[(kLpvEntering + 2u) * cells + self]);
-    uint blocked = links[self].x;
+    uint blocked = links[kLpvBlocked * cells + self];
     vec3 back = vec3(0.0);   // what the cell sent towards surfaces around it
     vec3 normal = vec3(0.0); // of these, from the directions that they block
     for (uint j = 0u; j < kLpvDirections; ++j) {
@@ -50,7 +51,7 @@ Arrival gatherLight(ivec3 at, uint cells) {
     if (blocked != 0u) {
         float size = length(normal);
         // Lambert's mean direction; none where surfaces on opposite sides cancel.
-        addLight(a, back * reflectance(links[self].y), size > 1e-6 ? normal * (2.0 / 3.0 / size) : vec3(0.0));
+        addLight(a, back * reflectance(self, cells), size > 1e-6 ? normal * (2.0 / 3.0 / size) : vec3(0.0));
     }
     return a;
 }

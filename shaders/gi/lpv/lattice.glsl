@@ -9,6 +9,9 @@ layout(std140) uniform Params { LpvParams params; };
 uint cellCount() { return uint(params.size.x * params.size.y * params.size.z); }
 uint cellIndex(ivec3 at) { return uint(at.x + params.size.x * (at.y + params.size.y * at.z)); }
 
+/// A point of render space in cells from the lattice's corner.
+vec3 latticePosition(vec3 position) { return (position - params.lowest.xyz) / params.lowest.w; }
+
 /// The cell `at`, brought back in along axes that repeat; false where there is none.
 bool wrapCell(inout ivec3 at) {
     ivec3 size = params.size.xyz;
@@ -69,12 +72,6 @@ vec4 makeLobe(float power, vec3 moment, out vec3 classes) {
     float scale = power / s.power;
     classes = s.classes * scale;
     return lobe * scale;
-}
-
-/// (1 - e^-x)/x, from x and e^-x. Cancels for small x: there a series.
-vec3 meanTransmittance(vec3 x, vec3 transmittance) {
-    vec3 series = 1.0 - x * (0.5 - x * (1.0 / 6.0 - x * (1.0 / 24.0)));
-    return mix((1.0 - transmittance) / max(x, vec3(1e-20)), series, lessThan(x, vec3(0.03)));
 }
 
 #endif

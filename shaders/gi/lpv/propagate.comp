@@ -32,7 +32,7 @@ void main() {
     for (uint c = 0u; c < kLpvClasses; ++c) {
         passed[c] = medium[(kLpvPassed + c) * cells + self].rgb;
         collided += vec3(redClasses[c], greenClasses[c], blueClasses[c]) * (1.0 - passed[c]);
-        leaving[c] = meanTransmittance(depth * sqrt(float(c + 1u)), passed[c]);
+        leaving[c] = oneMinusExpOverX(depth * sqrt(float(c + 1u)));
         escape += params.classWeights[c] * leaving[c];
     }
     vec3 emitted = (sources[kLpvEmission * cells + self].rgb + albedo * collided) / (1.0 - albedo + albedo * escape);

@@ -1,0 +1,40 @@
+#include "volumetric_gi/lpv/lpv_settings.h"
+
+namespace tyndall::volumetric_gi {
+namespace {
+
+const SettingDesc kLpvSettings[] = {
+    TYNDALL_INT(LpvSettings, resolution, "gi.lpv.resolution", "Lattice cells", "", 4, 72, 32,
+                "Cells along the longest side of the scene; the others follow from its shape."),
+    TYNDALL_INT(LpvSettings, steps, "gi.lpv.steps", "Steps a frame", "", 2, 4096, 96,
+                "Steps that light is propagated in each frame, on from the frame before."),
+    TYNDALL_INT(LpvSettings, rsmSize, "gi.lpv.rsmSize", "Map size", "texels", 16, 2048, 128,
+                "Side of a reflective shadow map: of each light, of each of its six directions."),
+    TYNDALL_INT(
+        LpvSettings, rsmLights, "gi.lpv.rsmLights", "Lights", "", 1, 1024, 64,
+        "Lights whose light is propagated, the strongest first; the others light directly alone."),
+    TYNDALL_INT(LpvSettings, rsmRectPoints, "gi.lpv.rsmRectPoints", "Points of a rect", "", 1, 64,
+                4, "Points of a rectangular light that have reflective shadow maps."),
+    TYNDALL_BOOL(LpvSettings, reflected, "gi.lpv.reflected", "Reflected light", true,
+                 "Light that surfaces reflect goes into the lattice."),
+    TYNDALL_BOOL(LpvSettings, scattered, "gi.lpv.scattered", "Scattered light", true,
+                 "Light that media scatter once goes into the lattice."),
+};
+
+constexpr PresetEntry kLpvPresets[] = {
+    {Quality::Low, "gi.lpv.resolution", "16"},    {Quality::Low, "gi.lpv.steps", "48"},
+    {Quality::Low, "gi.lpv.rsmSize", "64"},       {Quality::Low, "gi.lpv.rsmRectPoints", "1"},
+    {Quality::Medium, "gi.lpv.resolution", "24"}, {Quality::Medium, "gi.lpv.steps", "64"},
+    {Quality::Medium, "gi.lpv.rsmSize", "96"},    {Quality::Medium, "gi.lpv.rsmRectPoints", "2"},
+    {Quality::High, "gi.lpv.resolution", "32"},   {Quality::High, "gi.lpv.steps", "96"},
+    {Quality::High, "gi.lpv.rsmSize", "128"},     {Quality::High, "gi.lpv.rsmRectPoints", "4"},
+    {Quality::Ultra, "gi.lpv.resolution", "64"},  {Quality::Ultra, "gi.lpv.steps", "192"},
+    {Quality::Ultra, "gi.lpv.rsmSize", "256"},    {Quality::Ultra, "gi.lpv.rsmRectPoints", "8"},
+};
+
+} // namespace
+
+std::span<const SettingDesc> lpvSettings() { return kLpvSettings; }
+std::span<const PresetEntry> lpvPresets() { return kLpvPresets; }
+
+} // namespace tyndall::volumetric_gi

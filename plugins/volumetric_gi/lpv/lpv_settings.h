@@ -1,0 +1,22 @@
+#pragma once
+// Settings of the light propagation lattice.
+
+#include <cstdint>
+#include <span>
+
+#include "core/settings.h"
+
+namespace tyndall::volumetric_gi {
+
+struct LpvSettings {
+    int32_t resolution;
+    int32_t steps;
+    int32_t rsmSize;
+    int32_t rsmLights;
+    int32_t rsmRectPoints;
+    bool reflected, scattered;
+};
+std::span<const SettingDesc> lpvSettings();
+std::span<const PresetEntry> lpvPresets();
+
+} // namespace tyndall::volumetric_gi

@@ -1,0 +1,35 @@
+#pragma once
+// Light propagation volumes (Billeter, Sintorn and Assarsson 2012), corrected: a lattice that is seeded with the light that surfaces reflect
+// and media scatter once, and in which it is propagated with extinction and scattering. docs/techniques/lpv.md tells how.
+
+#include "plugin/plugin_api.h"
+#include "shared/lpv.h"
+#include "volumetric_gi/lpv/lpv_settings.h"
+#include "volumetric_gi/rsm/rsm_views.h"
+
+namespace tyndall::volumetric_gi {
+
+class LpvTechnique {
+public:
+    [[nodiscard]] LpvSettings& settings() { return settings_; }
+    /// Light of the lattice on surfaces and in media, as far as `inputs.terms` asks for it.
+    plugin::FrameOutputs addPasses(fg::FrameGraph& graph, const plugin::FrameInputs& inputs);
+
+private:
+    struct Lattice {
+        fg::BufferHandle medium, sources, links, flux;
+    };
+    fg::BufferHandle addMedium(fg::FrameGraph& graph, const plugin::FrameInputs& inputs) const;
+    fg::BufferHandle addLinks(fg::FrameGraph& graph, const plugin::FrameInputs& inputs) const;
+    fg::BufferHandle addSources(fg::FrameGraph& graph, const plugin::FrameInputs& inputs,
+                                fg::BufferHandle medium);
+    fg::BufferHandle addSteps(fg::FrameGraph& graph, const Lattice& lattice);
+
+    LpvSettings settings_{};
+    gpu::LpvParams params_{};
+    uint64_t cells_ = 0;
+    uint64_t latticeKey_ = 0; // of place and size
+    uint64_t statesKey_ = 0;  // the latticeKey_ that the flux buffers were filled for
+};
+
+} // namespace tyndall::volumetric_gi

@@ -1,0 +1,133 @@
+#include "volumetric_gi/rsm/rsm_views.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/low_discrepancy.h"
+
+namespace tyndall::volumetric_gi {
+namespace {
+
+constexpr double kWidestSpot = 1.2; // radians from its axis; a wider one gets all six views
+
+dvec3 rgb(const vec4& v) { return dvec3(v.x, v.y, v.z); }
+
+/// Watts, at most.
+dvec3 powerOf(const gpu::LightData& light, const Bounds& bounds) {
+    const dvec3 intensity = rgb(light.intensity);
+    switch (light.type) {
+    case gpu::kLightDirectional: {
+        const double side = glm::length(bounds.extent());
+        return intensity * side * side;
+    }
+    case gpu::kLightSpot: return intensity * 2.0 * kPi * (1 - double(light.axisY.w));
+    case gpu::kLightRect: return intensity * kPi * double(light.intensity.w);
+    default: return intensity * 4.0 * kPi;
+    }
+}
+
+/// Looks along `forward`.
+dmat4 lookingAlong(const dvec3& position, const dvec3& forward) {
+    const dvec3 z = -glm::normalize(forward);
+    const dvec3 pole = std::abs(z.y) < 0.9 ? dvec3(0, 1, 0) : dvec3(1, 0, 0);
+    const dvec3 x = glm::normalize(glm::cross(pole, z));
+    return dmat4(dvec4(x, 0), dvec4(glm::cross(z, x), 0), dvec4(z, 0), dvec4(position, 1));
+}
+
+class Planner {
+public:
+    Planner(const Bounds& bounds, int side, RsmPlan& plan)
+        : centre_(0.5 * (bounds.minimum + bounds.maximum)),
+          radius_(0.5 * glm::length(bounds.extent())), side_(side), plan_(plan) {}
+
+    void addParallel(uint32_t light, const dvec3& travel) {
+        RsmView v = make(light, lookingAlong(centre_ - 2 * radius_ * travel, travel));
+        v.view.halfHeight = float(radius_);
+        v.view.depthRange = float(4 * radius_);
+        v.texelArea = float(std::pow(2 * radius_ / side_, 2));
+        plan_.views.push_back(v);
+    }
+    void addPerspective(uint32_t light, const dvec3& from, const dvec3& forward, double yfov,
+                        double ball, double share) {
+        RsmView v = make(light, lookingAlong(from, forward));
+        v.view.yfov = float(yfov);
+        // Within its ball a lamp shines through; else as near as single precision of depth allows.
+        v.view.nearest = float(std::max(ball, 1e-4 * radius_));
+        v.share = float(share);
+        plan_.views.push_back(v);
+    }
+    /// The views of a cube around `from`, but not those that look away from `towards` (zero: all).
+    void addCube(uint32_t light, const dvec3& from, const dvec3& towards, double ball,
+                 double share) {
+        for (int axis = 0; axis < 3; ++axis)
+            for (int sign = -1; sign <= 1; sign += 2) {
+                dvec3 forward(0);
+                forward[axis] = sign;
+                // All of a face's directions are within 55° of its middle.
+                if (glm::dot(forward, towards) < -std::cos(kPi / 2 - 0.9554)) continue;
+                addPerspective(light, from, forward, kPi / 2, ball, share);
+            }
+    }
+
+private:
+    RsmView make(uint32_t light, const dmat4& renderFromView) const {
+        RsmView v;
+        v.view.renderFromView = mat4(renderFromView);
+        v.view.side = side_;
+        v.light = light;
+        return v;
+    }
+    dvec3 centre_;
+    double radius_;
+    int side_;
+    RsmPlan& plan_;
+};
+
+void addLight(Planner& planner, uint32_t index, const gpu::LightData& light, int rectPoints) {
+    const dvec3 position = rgb(light.position), direction = rgb(light.direction);
+    if (light.type == gpu::kLightDirectional) return planner.addParallel(index, direction);
+    if (light.type == gpu::kLightRect) {
+        for (int i = 0; i < rectPoints; ++i) {
+            const dvec2 u = rectPoints == 1 ? dvec2(0.5) : lowDiscrepancyPoint(uint32_t(i), 0);
+            planner.addCube(index,
+                            position + (2 * u.x - 1) * rgb(light.axisX) +
+                                (2 * u.y - 1) * rgb(light.axisY),
+                            direction, 0, 1.0 / rectPoints);
+        }
+        return;
+    }
+    const double ball = double(light.direction.w);
+    const double outer = std::acos(std::clamp(double(light.axisY.w), -1.0, 1.0));
+    if (light.type == gpu::kLightSpot && outer < kWidestSpot)
+        return planner.addPerspective(index, position, direction, 2 * outer, ball, 1);
+    planner.addCube(index, position, light.type == gpu::kLightSpot ? direction : dvec3(0), ball, 1);
+}
+
+} // namespace
+
+RsmPlan planRsm(std::span<const gpu::LightData> lights, const Bounds& bounds, int side,
+                int mostLights, int rectPoints) {
+    RsmPlan plan;
+    if (bounds.empty()) return plan;
+    std::vector<uint32_t> order;
+    const auto strength = [&](uint32_t i) {
+        const dvec3 power = powerOf(lights[i], bounds);
+        return std::max({power.x, power.y, power.z});
+    };
+    for (uint32_t i = 0; i < lights.size(); ++i)
+        if (strength(i) > 0) order.push_back(i);
+    std::stable_sort(order.begin(), order.end(),
+                     [&](uint32_t a, uint32_t b) { return strength(a) > strength(b); });
+    if (order.size() > size_t(mostLights)) {
+        plan.lightsLeftOut = uint32_t(order.size()) - uint32_t(mostLights);
+        order.resize(size_t(mostLights));
+    }
+    Planner planner(bounds, side, plan);
+    for (const uint32_t i : order) {
+        plan.power += powerOf(lights[i], bounds);
+        addLight(planner, i, lights[i], rectPoints);
+    }
+    return plan;
+}
+
+} // namespace tyndall::volumetric_gi

@@ -1,0 +1,31 @@
+#pragma once
+// Where reflective shadow maps look from: the views of the strongest lights.
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "plugin/plugin_api.h"
+
+namespace tyndall::volumetric_gi {
+
+/// One map: a square picture from a point of a light.
+struct RsmView {
+    plugin::SurfaceView view{};
+    uint32_t light = 0;
+    float share = 1;     // of the light's power that this point of it stands for
+    float texelArea = 0; // m², parallel views
+};
+
+struct RsmPlan {
+    std::vector<RsmView> views;
+    dvec3 power{0}; // of all its lights, watts: no more than this leaves them through the views
+    uint32_t lightsLeftOut = 0;
+};
+
+/// The views of the `mostLights` lights of the largest power. A light without directions gets six, a narrow spot and light from infinity one;
+/// a rect from `rectPoints` points of it. `bounds` (render space) holds all that is to be lit. `side`: texels.
+[[nodiscard]] RsmPlan planRsm(std::span<const gpu::LightData> lights, const Bounds& bounds,
+                              int side, int mostLights, int rectPoints);
+
+} // namespace tyndall::volumetric_gi

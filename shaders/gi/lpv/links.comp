@@ -1,0 +1,85 @@
+// Which ways between cells a triangle crosses. A workgroup a triangle; its threads share the cells around it.
+//
+// A way is the straight line between the middles of two neighbouring cells: walls of any thickness stand between them, or they do not, and a
+// cell belongs to the side on which its middle lies. Ways that graze an edge count as crossed: too few ways would be light through walls.
+#include "gi/lpv/lattice.glsl"
+#include "shared/material.h"
+#include "shared/object.h"
+
+layout(local_size_x = 64) in;
+
+layout(std140) uniform Triangles { LpvTriangles triangles; };
+layout(std430) readonly buffer Vertices { float vertices[]; };
+layout(std430) readonly buffer Indices { uint indices[]; };
+layout(std430) readonly buffer Objects { ObjectData objects[]; };
+layout(std430) readonly buffer Materials { MaterialData materials[]; };
+layout(std430) buffer LpvLinks { uint links[]; };
+uniform sampler2D baseColorTexture;
+
+const float kGraze = 1e-4; // of a cell, and of a triangle's own coordinates
+
+vec3 corner(uint index) {
+    uint at = indices[index] * triangles.strideFloats;
+    vec4 local = vec4(vertices[at], vertices[at + 1u], vertices[at + 2u], 1.0);
+    return latticePosition((objects[triangles.object].renderFromLocal * local).xyz);
+}
+
+/// Where the segment from `p` along `way` crosses the triangle, 0..1; -1 where it does not (Möller and Trumbore 1997).
+float crossing(vec3 p, vec3 way, vec3 a, vec3 ab, vec3 ac) {
+    vec3 h = cross(way, ac);
+    float determinant = dot(ab, h);
+    if (abs(determinant) < 1e-12) return -1.0;
+    float inverse = 1.0 / determinant;
+    vec3 s = p - a;
+    float u = dot(s, h) * inverse;
+    vec3 q = cross(s, ab);
+    float v = dot(way, q) * inverse;
+    float t = dot(ac, q) * inverse;
+    bool inside = u >= -kGraze && v >= -kGraze && u + v <= 1.0 + kGraze && t >= -kGraze && t <= 1.0 + kGraze;
+    return inside ? clamp(t, 0.0, 1.0) : -1.0;
+}
+
+void addSurface(uint cell, uint cells, vec3 colour) {
+    uvec3 units = uvec3(clamp(colour, 0.0, 1.0) * float(kLpvReflectanceUnit) + 0.5);
+    for (uint c = 0u; c < 3u; ++c) atomicAdd(links[(kLpvReflectance + c) * cells + cell], units[c]);
+    atomicAdd(links[kLpvSurfaces * cells + cell], 1u);
+}
+
+void main() {
+    uint triangle = gl_WorkGroupID.x + gl_WorkGroupID.y * gl_NumWorkGroups.x;
+    if (triangle >= triangles.count) return;
+    vec3 a = corner(3u * triangle);
+    vec3 b = corner(3u * triangle + 1u);
+    vec3 c = corner(3u * triangle + 2u);
+    ivec3 first = clamp(ivec3(floor(min(a, min(b, c)) - 0.5)) - 1, ivec3(0), params.size.xyz - 1);
+    ivec3 last = clamp(ivec3(floor(max(a, max(b, c)) - 0.5)) + 1, ivec3(0), params.size.xyz - 1);
+    ivec3 span = last - first + 1;
+    vec3 normal = cross(b - a, c - a);
+    float size = length(normal);
+    if (!(size > 0.0)) return;
+    normal /= size;
+    MaterialData material = materials[objects[triangles.object].material];
+    // The coarsest level of a texture is its mean.
+    vec3 colour = material.baseColor.rgb;
+    if (material.baseColorTexture.offset.w != 0.0) colour *= textureLod(baseColorTexture, vec2(0.5), 100.0).rgb;
+    uint cells = cellCount();
+    for (uint i = gl_LocalInvocationID.x; i < uint(span.x * span.y * span.z); i += 64u) {
+        ivec3 at = first + ivec3(i % uint(span.x), i / uint(span.x) % uint(span.y), i / uint(span.x * span.y));
+        vec3 middle = vec3(at) + 0.5;
+        if (abs(dot(middle - a, normal)) > 1.7321 + kGraze) continue; // no way from here reaches the plane
+        uint self = cellIndex(at);
+        // Half of the directions: the other half are the same ways from the other end.
+        for (uint j = 13u; j < kLpvDirections; ++j) {
+            ivec3 offset = params.directions[j].offset.xyz;
+            ivec3 to = at + offset;
+            float t = crossing(middle, vec3(offset), a, b - a, c - a);
+            if (t < 0.0) continue;
+            atomicOr(links[kLpvBlocked * cells + self], 1u << j);
+            addSurface(self, cells, colour);
+            if (any(lessThan(to, ivec3(0))) || any(greaterThanEqual(to, params.size.xyz))) continue;
+            uint other = cellIndex(to);
+            atomicOr(links[kLpvBlocked * cells + other], 1u << (25u - j));
+            addSurface(other, cells, colour);
+        }
+    }
+}

@@ -1,0 +1,44 @@
+// What the media are in each cell of the lattice: means over 27 points of it.
+//
+// Light is propagated in two bands, for which a medium that scatters by a mean cosine of g is one that scatters (1 - g) as much, evenly
+// to all sides (the transport approximation; exact in two bands): that is what propagation takes.
+#include "gi/lpv/lattice.glsl"
+#if MEDIA
+#include "common/phase_function.glsl"
+#include "media/density.glsl"
+#endif
+
+layout(local_size_x = 8, local_size_y = 4, local_size_z = 2) in;
+
+layout(std430) writeonly buffer LpvMedium { vec4 medium[]; };
+
+void main() {
+    ivec3 at = ivec3(gl_GlobalInvocationID);
+    if (any(greaterThanEqual(at, params.size.xyz))) return;
+    uint cells = cellCount();
+    uint self = cellIndex(at);
+    vec3 extinction = vec3(0.0);
+    vec3 scattering = vec3(0.0);
+    vec3 forward = vec3(0.0); // scattering times mean cosine
+#if MEDIA
+    const int kAcross = 3;
+    for (int i = 0; i < kAcross * kAcross * kAcross; ++i) {
+        vec3 within = (vec3(i % kAcross, i / kAcross % kAcross, i / (kAcross * kAcross)) + 0.5) / float(kAcross);
+        vec3 position = params.lowest.xyz + (vec3(at) + within) * params.lowest.w;
+        for (uint m = 0u; m < mediumCount(); ++m) {
+            float density = mediumDensity(m, position) / float(kAcross * kAcross * kAcross);
+            extinction += density * media[m].extinction.rgb;
+            scattering += density * media[m].scattering.rgb;
+            forward += density * media[m].scattering.rgb * phaseMeanCosine(media[m].phase, media[m].scattering.w);
+        }
+    }
+#endif
+    vec3 transport = max(extinction - forward, vec3(0.0));
+    vec3 depth = transport * params.lowest.w;
+    for (uint c = 0u; c < kLpvClasses; ++c) medium[(kLpvPassed + c) * cells + self] = vec4(exp(-depth * sqrt(float(c + 1u))), 0.0);
+    medium[kLpvDepth * cells + self] = vec4(depth, 0.0);
+    medium[kLpvAlbedo * cells + self] = vec4(clamp((scattering - forward) / max(transport, vec3(1e-30)), 0.0, 1.0), 0.0);
+    float cosine = meanOf(forward) / max(meanOf(scattering), 1e-30);
+    medium[kLpvTrueDepth * cells + self] = vec4(extinction * params.lowest.w, cosine);
+    medium[kLpvTrueAlbedo * cells + self] = vec4(clamp(scattering / max(extinction, vec3(1e-30)), 0.0, 1.0), 0.0);
+}

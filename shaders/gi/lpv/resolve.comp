@@ -1,0 +1,51 @@
+// The light that there is in each cell, from what is sent: fluence and vector flux, W/m², by the length of its ways through the cell.
+#include "gi/lpv/gather.glsl"
+
+layout(local_size_x = 8, local_size_y = 4, local_size_z = 2) in;
+
+layout(std430) readonly buffer LpvMedium { vec4 medium[]; };
+// xyz: vector flux, w: fluence, of a channel
+layout(rgba32f) writeonly uniform image3D redLight;
+layout(rgba32f) writeonly uniform image3D greenLight;
+layout(rgba32f) writeonly uniform image3D blueLight;
+
+/// (1 - (1 - e^-x)/x)/x: mean length of ways that begin anywhere on a way of optical depth x and end where it ends.
+float meanOfInnerWays(float x) { return x < 0.02 ? 0.5 - x * (1.0 / 6.0 - x * (1.0 / 24.0)) : (1.0 - oneMinusExpOverX(x)) / x; }
+
+vec4 channelLight(vec4 arrival, float depth, float albedo, float emission) {
+    vec3 classes;
+    vec4 lobe = makeLobe(arrival.w, arrival.xyz, classes);
+    float collided = 0.0;
+    float escape = 0.0;
+    for (uint c = 0u; c < kLpvClasses; ++c) {
+        float way = depth * sqrt(float(c + 1u));
+        collided += classes[c] * oneMinusExp(way);
+        escape += params.classWeights[c] * oneMinusExpOverX(way);
+    }
+    float emitted = (emission + albedo * collided) / (1.0 - albedo + albedo * escape);
+    vec4 sum = vec4(0.0);
+    for (uint j = 0u; j < kLpvDirections; ++j) {
+        vec4 d = params.directions[j].unit;
+        float size = sqrt(float(params.directions[j].offset.w + 1));
+        float way = depth * size;
+        float power = d.w * (lobeTowards(lobe, d.xyz) * oneMinusExpOverX(way) + emitted * meanOfInnerWays(way));
+        sum += power * size * vec4(d.xyz, 1.0);
+    }
+    return sum;
+}
+
+void main() {
+    ivec3 at = ivec3(gl_GlobalInvocationID);
+    if (any(greaterThanEqual(at, params.size.xyz))) return;
+    uint cells = cellCount();
+    uint self = cellIndex(at);
+    Arrival a = gatherLight(at, cells);
+    vec3 depth = medium[kLpvDepth * cells + self].rgb;
+    vec3 albedo = medium[kLpvAlbedo * cells + self].rgb;
+    vec3 emission = sources[kLpvEmission * cells + self].rgb;
+    // Power times length in cells, over the cell's volume.
+    float unit = 1.0 / (params.lowest.w * params.lowest.w);
+    imageStore(redLight, at, unit * channelLight(a.red, depth.r, albedo.r, emission.r));
+    imageStore(greenLight, at, unit * channelLight(a.green, depth.g, albedo.g, emission.g));
+    imageStore(blueLight, at, unit * channelLight(a.blue, depth.b, albedo.b, emission.b));
+}
