@@ -31,7 +31,9 @@ TYNDALL_CONST uint kLpvDepositPlanes = 15u;
 TYNDALL_CONST uint kLpvBlocked = 0u;     // bit j: a surface stands in the way to the neighbour in direction j
 TYNDALL_CONST uint kLpvReflectance = 1u; // 3, of red, green, blue: sum over the surfaces, in units of 1/kLpvReflectanceUnit
 TYNDALL_CONST uint kLpvSurfaces = 4u;    // how many crossings are in that sum
-TYNDALL_CONST uint kLpvLinkPlanes = 5u;
+TYNDALL_CONST uint kLpvNearest = 5u;     // 6, of the first surface towards +x -x +y -y +z -z before the next cell: 4096 less its distance in
+                                         // 4095ths of a cell << 20, and its normal, octahedral, 10 bits each; 0: none
+TYNDALL_CONST uint kLpvLinkPlanes = 11u;
 TYNDALL_CONST uint kLpvReflectanceUnit = 1024u;
 
 struct LpvDirection {

@@ -51,11 +51,13 @@ LatticeLight addLatticeLight(fg::FrameGraph& graph, const gpu::LpvParams& params
 }
 
 fg::TextureHandle addSurfaceLookup(fg::FrameGraph& graph, const plugin::FrameInputs& inputs,
-                                   const gpu::LpvParams& params, const LatticeLight& light) {
+                                   const gpu::LpvParams& params, fg::BufferHandle links,
+                                   const LatticeLight& light) {
     struct Data {
         ViewResources view;
         GBuffer gbuffer;
         LatticeLight light;
+        fg::BufferHandle links;
         fg::TextureHandle radiance;
         gpu::LpvParams params;
     };
@@ -69,6 +71,7 @@ fg::TextureHandle addSurfaceLookup(fg::FrameGraph& graph, const plugin::FrameInp
                 data.gbuffer.base = builder.read(inputs.gbuffer.base);
                 data.gbuffer.material = builder.read(inputs.gbuffer.material);
                 data.light = readLight(builder, light);
+                data.links = builder.read(links);
                 data.radiance = builder.create(
                     "gi.lpv.surfaceRadiance",
                     fg::texture2D(fg::Format::RGBA32F, inputs.view.width, inputs.view.height));
@@ -79,6 +82,7 @@ fg::TextureHandle addSurfaceLookup(fg::FrameGraph& graph, const plugin::FrameInp
                 bindView(command, data.view);
                 bindLight(command, data.light)
                     .params(data.params)
+                    .bind("LpvLinks", data.links)
                     .bind("gbufferDepth", data.gbuffer.depth)
                     .bind("gbufferNormal", data.gbuffer.normal)
                     .bind("gbufferBase", data.gbuffer.base)
@@ -90,11 +94,13 @@ fg::TextureHandle addSurfaceLookup(fg::FrameGraph& graph, const plugin::FrameInp
 }
 
 fg::TextureHandle addMediumLookup(fg::FrameGraph& graph, const plugin::FrameInputs& inputs,
-                                  const gpu::LpvParams& params, const LatticeLight& light) {
+                                  const gpu::LpvParams& params, fg::BufferHandle links,
+                                  const LatticeLight& light) {
     struct Data {
         ViewResources view;
         MediaResources media;
         LatticeLight light;
+        fg::BufferHandle links;
         fg::TextureHandle depth, inScatter;
         gpu::LpvParams params;
     };
@@ -107,6 +113,7 @@ fg::TextureHandle addMediumLookup(fg::FrameGraph& graph, const plugin::FrameInpu
                 data.media = readMedia(builder, inputs.media);
                 data.depth = builder.read(inputs.gbuffer.depth);
                 data.light = readLight(builder, light);
+                data.links = builder.read(links);
                 data.inScatter = builder.create(
                     "gi.lpv.inScatter",
                     fg::texture2D(fg::Format::RGBA32F, inputs.view.width, inputs.view.height));
@@ -120,6 +127,7 @@ fg::TextureHandle addMediumLookup(fg::FrameGraph& graph, const plugin::FrameInpu
                 bindMedia(command, data.media);
                 bindLight(command, data.light)
                     .params(data.params)
+                    .bind("LpvLinks", data.links)
                     .bind("depth", data.depth)
                     .bind("inScatter", data.inScatter)
                     .dispatchOver(data.inScatter);

@@ -19,12 +19,12 @@ struct LatticeLight {
 [[nodiscard]] fg::TextureHandle addSurfaceLookup(fg::FrameGraph& graph,
                                                  const plugin::FrameInputs& inputs,
                                                  const gpu::LpvParams& params,
-                                                 const LatticeLight& light);
+                                                 fg::BufferHandle links, const LatticeLight& light);
 
 /// View-sized RGBA32F nits that reach the eye from media. Skipped where there are none.
 [[nodiscard]] fg::TextureHandle addMediumLookup(fg::FrameGraph& graph,
                                                 const plugin::FrameInputs& inputs,
                                                 const gpu::LpvParams& params,
-                                                const LatticeLight& light);
+                                                fg::BufferHandle links, const LatticeLight& light);
 
 } // namespace tyndall::volumetric_gi

@@ -47,7 +47,7 @@ struct InjectData {
     LightResources lights;
     MediaResources media;
     GBuffer surfaces;
-    fg::BufferHandle medium, deposits;
+    fg::BufferHandle medium, links, deposits;
     gpu::LpvParams params;
     gpu::LpvInjectParams inject;
     bool scatter, reflect;
@@ -64,6 +64,7 @@ void recordInject(const InjectData& data, fg::PassContext& context) {
     command.params(data.params)
         .params(data.inject, "Inject")
         .bind("LpvMedium", data.medium)
+        .bind("LpvLinks", data.links)
         .bind("LpvDeposits", data.deposits)
         .bind("rsmDepth", data.surfaces.depth)
         .bind("rsmNormal", data.surfaces.normal)
@@ -149,7 +150,7 @@ fg::BufferHandle LpvTechnique::addLinks(fg::FrameGraph& graph,
 }
 
 fg::BufferHandle LpvTechnique::addSources(fg::FrameGraph& graph, const plugin::FrameInputs& inputs,
-                                          fg::BufferHandle medium) {
+                                          const Lattice& lattice) {
     const RsmPlan plan =
         planRsm({inputs.lightData, inputs.lights.lightCount}, boundsOf(inputs.scene),
                 settings_.rsmSize, settings_.rsmLights, settings_.rsmRectPoints);
@@ -193,7 +194,8 @@ fg::BufferHandle LpvTechnique::addSources(fg::FrameGraph& graph, const plugin::F
                                data.surfaces.normal = builder.read(surfaces.normal);
                                data.surfaces.base = builder.read(surfaces.base);
                                data.surfaces.material = builder.read(surfaces.material);
-                               data.medium = builder.read(medium);
+                               data.medium = builder.read(lattice.medium);
+                               data.links = builder.read(lattice.links);
                                data.deposits = builder.write(deposits);
                                data.params = params_;
                                data.inject = inject;
@@ -292,15 +294,15 @@ plugin::FrameOutputs LpvTechnique::addPasses(fg::FrameGraph& graph,
     Lattice lattice;
     lattice.medium = addMedium(graph, inputs);
     lattice.links = addLinks(graph, inputs);
-    lattice.sources = addSources(graph, inputs, lattice.medium);
+    lattice.sources = addSources(graph, inputs, lattice);
     lattice.flux = addSteps(graph, lattice);
     const LatticeLight light = addLatticeLight(graph, params_, lattice.medium, lattice.sources,
                                                lattice.links, lattice.flux);
     plugin::FrameOutputs outputs;
     if (inputs.terms & kIndirectOnSurfaces)
-        outputs.surfaceRadiance = addSurfaceLookup(graph, inputs, params_, light);
+        outputs.surfaceRadiance = addSurfaceLookup(graph, inputs, params_, lattice.links, light);
     if (inputs.terms & ~kIndirectOnSurfaces)
-        outputs.inScatter = addMediumLookup(graph, inputs, params_, light);
+        outputs.inScatter = addMediumLookup(graph, inputs, params_, lattice.links, light);
     return outputs;
 }
 

@@ -22,7 +22,7 @@ private:
     fg::BufferHandle addMedium(fg::FrameGraph& graph, const plugin::FrameInputs& inputs) const;
     fg::BufferHandle addLinks(fg::FrameGraph& graph, const plugin::FrameInputs& inputs) const;
     fg::BufferHandle addSources(fg::FrameGraph& graph, const plugin::FrameInputs& inputs,
-                                fg::BufferHandle medium);
+                                const Lattice& lattice);
     fg::BufferHandle addSteps(fg::FrameGraph& graph, const Lattice& lattice);
 
     LpvSettings settings_{};

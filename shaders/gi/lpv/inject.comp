@@ -6,7 +6,7 @@
 #include "common/octahedral.glsl"
 #include "common/view.glsl"
 #include "gi/lpv/even_reflectance.glsl"
-#include "gi/lpv/lattice.glsl"
+#include "gi/lpv/sides.glsl"
 #include "lighting/light.glsl"
 #include "shared/gbuffer.h"
 #if MEDIA
@@ -119,8 +119,9 @@ void scatterAlong(Ray ray, vec3 power, float end, inout Rests rests, inout vec3 
             vec3 scattered = power * window * exp(-depth) * across * oneMinusExpOverX(across) * medium[kLpvTrueAlbedo * cells + index].rgb;
             // A mean cosine of g: a part |g| goes on (or back), the rest to all sides.
             float g = cellDepth.w;
-            for (uint c = 0u; c < 3u; ++c) deposit(12u + c, index, cells, scattered[c] * (1.0 - abs(g)), rests.emission[c]);
-            if (g != 0.0) depositEntering(index, cells, scattered * abs(g), ray.direction * sign(g), rests);
+            uint target = cellIndex(cellOnSide(origin + direction * middle));
+            for (uint c = 0u; c < 3u; ++c) deposit(12u + c, target, cells, scattered[c] * (1.0 - abs(g)), rests.emission[c]);
+            if (g != 0.0) depositEntering(target, cells, scattered * abs(g), ray.direction * sign(g), rests);
             depth += across;
         }
         if (planes.x <= next) cell.x += safe.x > 0.0 ? 1 : -1;
@@ -150,10 +151,9 @@ void main() {
     if ((uint(material.w * 65535.0 + 0.5) & kGBufferUnlit) != 0u) return;
     vec4 base = texelFetch(rsmBase, texel, 0);
     vec3 normal = octahedralDecodeUnorm(texelFetch(rsmNormal, texel, 0).zw);
-    // Half a cell off the surface: the light starts in the cell that it goes to.
-    vec3 place = latticePosition(ray.origin + ray.direction * surface) + 0.5 * normal;
-    ivec3 cell = ivec3(floor(place));
-    if (any(lessThan(cell, ivec3(0))) || any(greaterThanEqual(cell, params.size.xyz))) return;
+    vec3 place = latticePosition(ray.origin + ray.direction * surface) + kOffSurface * normal;
+    if (any(lessThan(place, vec3(0.0))) || any(greaterThanEqual(place, vec3(params.size.xyz)))) return;
+    ivec3 cell = cellOnSide(place);
     vec3 reflected = evenReflectance(base, material.y);
     float window = lights[inject.light].type == kLightDirectional ? 1.0 : rangeWindow(lights[inject.light].position.w, surface);
     depth = depthBefore(ray, surface);

@@ -46,6 +46,7 @@ LobeSums sumLobe(vec4 lobe) {
     return s;
 }
 
+const float kLeastPower = 1e-30;   // less is nothing: what it is divided by and into stays finite
 const float kNarrowestLobe = 0.88; // 26 directions hold no narrower one evenly
 
 /// The lobe of light of this power and first moment. Linear in the cosine while that is nowhere negative; then the part of a line above
@@ -53,13 +54,13 @@ const float kNarrowestLobe = 0.88; // 26 directions hold no narrower one evenly
 /// lobe comes out too narrow, more directions come in, lest it sharpen itself from step to step (LatticeModel::lobe).
 vec4 makeLobe(float power, vec3 moment, out vec3 classes) {
     classes = vec3(0.0);
-    if (!(power > 0.0)) return vec4(0.0);
-    float size = length(moment);
-    float r = size / power;
+    if (!(power > kLeastPower)) return vec4(0.0);
+    vec3 mean = moment / power; // squares of small moments would underflow
+    float r = length(mean);
     bool linear = r <= 1.0 / 3.0;
     float narrow = min(r, kNarrowestLobe);
-    vec3 along = size > 0.0 ? moment / size : vec3(0.0);
-    vec4 lobe = linear ? vec4(moment * (3.0 / power), 1.0) : vec4(along, 2.0 - 3.0 * narrow);
+    vec3 along = r > 0.0 ? mean / r : vec3(0.0);
+    vec4 lobe = linear ? vec4(mean * 3.0, 1.0) : vec4(along, 2.0 - 3.0 * narrow);
     LobeSums s = sumLobe(lobe);
     // A loop rather than a condition: drivers that run both sides of conditions leave a loop that nobody needs.
     int passes = linear ? 0 : 2;

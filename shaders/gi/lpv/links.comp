@@ -2,6 +2,7 @@
 //
 // A way is the straight line between the middles of two neighbouring cells: walls of any thickness stand between them, or they do not, and a
 // cell belongs to the side on which its middle lies. Ways that graze an edge count as crossed: too few ways would be light through walls.
+#include "common/octahedral.glsl"
 #include "gi/lpv/lattice.glsl"
 #include "shared/material.h"
 #include "shared/object.h"
@@ -58,6 +59,8 @@ void main() {
     float size = length(normal);
     if (!(size > 0.0)) return;
     normal /= size;
+    uvec2 encoded = uvec2((octahedralEncode(normal) * 0.5 + 0.5) * 1023.0 + 0.5);
+    uint packedNormal = encoded.x << 10u | encoded.y;
     MaterialData material = materials[objects[triangles.object].material];
     // The coarsest level of a texture is its mean.
     vec3 colour = material.baseColor.rgb;
@@ -76,10 +79,14 @@ void main() {
             if (t < 0.0) continue;
             atomicOr(links[kLpvBlocked * cells + self], 1u << j);
             addSurface(self, cells, colour);
+            int axis = params.directions[j].offset.w != 0 ? -1 : (offset.x != 0 ? 0 : (offset.y != 0 ? 1 : 2));
+            uint units = uint(t * 4095.0 + 0.5);
+            if (axis >= 0) atomicMax(links[(kLpvNearest + 2u * uint(axis)) * cells + self], (4096u - max(units, 1u)) << 20u | packedNormal);
             if (any(lessThan(to, ivec3(0))) || any(greaterThanEqual(to, params.size.xyz))) continue;
             uint other = cellIndex(to);
             atomicOr(links[kLpvBlocked * cells + other], 1u << (25u - j));
             addSurface(other, cells, colour);
+            if (axis >= 0) atomicMax(links[(kLpvNearest + 2u * uint(axis) + 1u) * cells + other], (4096u - max(4095u - units, 1u)) << 20u | packedNormal);
         }
     }
 }

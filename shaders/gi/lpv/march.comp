@@ -27,7 +27,8 @@ void main() {
             Segment s = marchSegment(ray, t, end);
             t = s.start + s.size;
             if (s.scatters) {
-                LatticeLight light = latticeLight(ray.origin + ray.direction * (s.start + 0.5 * s.size));
+                vec3 place = latticePosition(ray.origin + ray.direction * (s.start + 0.5 * s.size));
+                LatticeLight light = latticeLight(place);
                 vec3 all = fluence(light);
                 vec3 towardsEye = -fluxAlong(light, ray.direction);
                 vec3 scattered = vec3(0.0);

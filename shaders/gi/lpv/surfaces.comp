@@ -24,9 +24,11 @@ void main() {
         vec4 normals = texelFetch(gbufferNormal, texel, 0);
         vec4 base = texelFetch(gbufferBase, texel, 0);
         vec3 normal = octahedralDecodeUnorm(normals.xy);
-        // Half a cell off the surface: cells behind it have no part in its light.
-        vec3 position = renderPosition(vec2(texel) + 0.5, depth) + 0.5 * params.lowest.w * octahedralDecodeUnorm(normals.zw);
-        LatticeLight light = latticeLight(position);
+        // Off the surface: cells behind it have no part in its light. A little towards the eye: a point on an edge is on no side of the
+        // other surface there, but the eye is.
+        vec2 pixel = vec2(texel) + 0.5;
+        vec3 place = latticePosition(renderPosition(pixel, depth)) + kOffSurface * octahedralDecodeUnorm(normals.zw) - 0.01 * cameraRay(pixel).direction;
+        LatticeLight light = latticeLight(place);
         // Of radiance (Φ + 3 F·ω)/4π, what arrives on a plane: Φ/4 - F·n/2.
         vec3 irradiance = max(0.25 * fluence(light) - 0.5 * fluxAlong(light, normal), vec3(0.0));
         radiance = evenReflectance(base, material.y) * irradiance / kPi;
