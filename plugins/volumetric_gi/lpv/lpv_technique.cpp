@@ -75,6 +75,18 @@ void recordInject(const InjectData& data, fg::PassContext& context) {
 
 } // namespace
 
+/// Of everything that the lattice's light follows from.
+uint64_t LpvTechnique::sourceKey(const plugin::FrameInputs& inputs) const {
+    uint64_t key = fg::mixHash(latticeKey_, inputs.scene.geometry);
+    for (const uint64_t version :
+         {inputs.scene.materials, inputs.scene.media, uint64_t(settings_.rsmSize),
+          uint64_t(settings_.rsmLights), uint64_t(settings_.rsmRectPoints),
+          uint64_t(settings_.reflected), uint64_t(settings_.scattered)})
+        key = fg::mixHash(key, version);
+    const char* bytes = reinterpret_cast<const char*>(inputs.lightData);
+    return fg::hashName({bytes, inputs.lights.lightCount * sizeof(gpu::LightData)}, key);
+}
+
 fg::BufferHandle LpvTechnique::addMedium(fg::FrameGraph& graph,
                                          const plugin::FrameInputs& inputs) const {
     struct Data {
@@ -236,7 +248,9 @@ fg::BufferHandle LpvTechnique::addSources(fg::FrameGraph& graph, const plugin::F
         .sources;
 }
 
-fg::BufferHandle LpvTechnique::addSteps(fg::FrameGraph& graph, const Lattice& lattice) {
+/// Light goes on from where the last frame left it only where nothing has changed since: a picture never shows what was.
+fg::BufferHandle LpvTechnique::addSteps(fg::FrameGraph& graph, const Lattice& lattice,
+                                        uint64_t key) {
     const fg::BufferDesc desc{cells_ * gpu::kLpvFluxPlanes * sizeof(float)};
     const fg::PersistentBuffer here = graph.persistentBuffer("gi.lpv.flux", desc),
                                there = graph.persistentBuffer("gi.lpv.flux2", desc);
@@ -257,7 +271,7 @@ fg::BufferHandle LpvTechnique::addSteps(fg::FrameGraph& graph, const Lattice& la
             data.flux[1] = builder.write(there.handle);
             data.params = params_;
             data.steps = (settings_.steps + 1) / 2 * 2; // ends in the first buffer
-            data.clear = here.wasReset || there.wasReset || statesKey_ != latticeKey_;
+            data.clear = here.wasReset || there.wasReset || stateKey_ != key;
         },
         [](const Data& data, fg::PassContext& context) {
             if (data.clear) {
@@ -277,7 +291,7 @@ fg::BufferHandle LpvTechnique::addSteps(fg::FrameGraph& graph, const Lattice& la
                 context.barrier(fg::Access::StorageRead);
             }
         });
-    statesKey_ = latticeKey_;
+    stateKey_ = key;
     return pass.flux[0];
 }
 
@@ -295,7 +309,7 @@ plugin::FrameOutputs LpvTechnique::addPasses(fg::FrameGraph& graph,
     lattice.medium = addMedium(graph, inputs);
     lattice.links = addLinks(graph, inputs);
     lattice.sources = addSources(graph, inputs, lattice);
-    lattice.flux = addSteps(graph, lattice);
+    lattice.flux = addSteps(graph, lattice, sourceKey(inputs));
     const LatticeLight light = addLatticeLight(graph, params_, lattice.medium, lattice.sources,
                                                lattice.links, lattice.flux);
     plugin::FrameOutputs outputs;

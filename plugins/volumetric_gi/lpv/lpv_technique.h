@@ -23,13 +23,14 @@ private:
     fg::BufferHandle addLinks(fg::FrameGraph& graph, const plugin::FrameInputs& inputs) const;
     fg::BufferHandle addSources(fg::FrameGraph& graph, const plugin::FrameInputs& inputs,
                                 const Lattice& lattice);
-    fg::BufferHandle addSteps(fg::FrameGraph& graph, const Lattice& lattice);
+    fg::BufferHandle addSteps(fg::FrameGraph& graph, const Lattice& lattice, uint64_t key);
+    [[nodiscard]] uint64_t sourceKey(const plugin::FrameInputs& inputs) const;
 
     LpvSettings settings_{};
     gpu::LpvParams params_{};
     uint64_t cells_ = 0;
     uint64_t latticeKey_ = 0; // of place and size
-    uint64_t statesKey_ = 0;  // the latticeKey_ that the flux buffers were filled for
+    uint64_t stateKey_ = 0;   // sourceKey() of what is in the flux buffers
 };
 
 } // namespace tyndall::volumetric_gi
