@@ -17,10 +17,11 @@ inline constexpr uint32_t kAbiVersion = 2;
 
 /// One technique that a plugin offers: the name that `--gi` takes, and the terms that it computes.
 struct TechniqueInfo {
-    const char* name;  // "octaves"
-    const char* title; // "Octaves of multiple scattering"
-    const char* help;  // one sentence
-    TermSet claims;    // what it can compute; the frame's plan gives it all or some
+    const char* name;   // "octaves"
+    const char* title;  // "Octaves of multiple scattering"
+    const char* help;   // one sentence
+    TermSet claims;     // what it can compute; the frame's plan gives it all or some
+    uint32_t automatic; // 1: `auto` may choose it; 0: only who asks for it gets it
 };
 
 struct PluginInfo {

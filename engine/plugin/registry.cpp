@@ -104,10 +104,10 @@ std::vector<std::string> PluginRegistry::setup(Host& host, SettingsRegistry& set
         const PluginInfo& info = loaded.instance->info();
         for (uint32_t t = 0; t < info.techniqueCount; ++t) {
             const TechniqueInfo& technique = info.techniques[t];
-            techniques_.push_back(
-                {{technique.name, technique.title, technique.help, info.name, technique.claims},
-                 i,
-                 t});
+            techniques_.push_back({{technique.name, technique.title, technique.help, info.name,
+                                    technique.claims, technique.automatic != 0},
+                                   i,
+                                   t});
         }
         ++i;
     }

@@ -72,7 +72,7 @@ int chooseAutomatically(TermSet indirect, std::span<const Technique> techniques)
     int most = 0;
     for (size_t i = 0; i < techniques.size(); ++i) {
         const int count = __builtin_popcount(techniques[i].claims & indirect);
-        if (count > most) {
+        if (techniques[i].automatic && count > most) {
             most = count;
             best = int(i);
         }

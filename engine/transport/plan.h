@@ -16,6 +16,7 @@ struct Technique {
     std::string title, help;
     std::string plugin; // who brings it
     TermSet claims = 0;
+    bool automatic = true; // `auto` may choose it; else it is there for who asks for it
 };
 
 /// What about the scene decides whether a term can be other than zero.

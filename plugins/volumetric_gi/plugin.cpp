@@ -11,10 +11,11 @@ namespace {
 constexpr plugin::TechniqueInfo kTechniques[] = {
     {"octaves", "Octaves of multiple scattering",
      "Baseline: multiple scattering as reduced copies of single scattering, inside the march.",
-     terms(Term::LVVE, Term::LXVVE)},
+     terms(Term::LVVE, Term::LXVVE), 1},
     {"lpv", "Light propagation volume",
      "Light that surfaces reflect and media scatter, propagated in a lattice: all indirect light.",
-     kIndirectOnSurfaces | kIndirectInMedia},
+     kIndirectOnSurfaces | kIndirectInMedia,
+     0}, // one lattice a scene: too coarse for landscapes, until it has cascades
 };
 constexpr uint32_t kLpv = 1; // index in the table
 constexpr plugin::PluginInfo kInfo{"volumetric_gi", "0.1.0",

@@ -65,6 +65,13 @@ TEST(TransportPlan, AutoTakesTheTechniqueThatClaimsMostAndSaysSo) {
     EXPECT_EQ(makePlan("auto", kDirectTerms, kTechniques, kEverything).value().technique, "none");
 }
 
+TEST(TransportPlan, AutoLeavesAloneWhatIsOnlyForWhoAsks) {
+    std::vector<Technique> techniques = kTechniques;
+    techniques[1].automatic = false;
+    EXPECT_EQ(makePlan("auto", kAllTerms, techniques, kEverything).value().technique, "octaves");
+    EXPECT_EQ(makePlan("lattice", kAllTerms, techniques, kEverything).value().missing, 0u);
+}
+
 TEST(TransportPlan, AssignmentsRenderExactlyWhatTheyName) {
     const FramePlan plan =
         makePlan("LSE=direct,LVVE=octaves", kAllTerms, kTechniques, kEverything).value();
