@@ -11,6 +11,7 @@
 namespace tyndall::volumetric_gi {
 namespace {
 
+constexpr double kLeastPower = 1e-25; // watts of all lights; units for less would overflow
 constexpr uint64_t kMostCells = 128ull * 1024 * 1024 / (gpu::kLpvFluxPlanes * sizeof(float));
 
 uint64_t hashFloats(uint64_t seed, const float* values, size_t count) {
@@ -168,7 +169,8 @@ fg::BufferHandle LpvTechnique::addSources(fg::FrameGraph& graph, const plugin::F
                 settings_.rsmSize, settings_.rsmLights, settings_.rsmRectPoints);
     gpu::LpvInjectParams inject{};
     for (int c = 0; c < 3; ++c)
-        inject.scale[c] = plan.power[c] > 0 ? float(double(1 << 30) / plan.power[c]) : 0.0f;
+        inject.scale[c] =
+            plan.power[c] > kLeastPower ? float(double(1 << 30) / plan.power[c]) : 0.0f;
 
     struct Clear {
         fg::BufferHandle deposits;
