@@ -39,15 +39,16 @@ public:
         *count = uint32_t(presets_.size());
     }
 
-    bool setup(plugin::Host&, char*, uint32_t) override {
-        return true;
-    } // its shaders are among the engine's
+    bool setup(plugin::Host& host, char*, uint32_t) override {
+        host_ = &host;
+        return true; // its shaders are among the engine's
+    }
     void sceneChanged(const plugin::SceneChange&) override {
     } // the march reads everything anew each frame
 
     plugin::FrameOutputs addPasses(fg::FrameGraph& graph, uint32_t technique,
                                    const plugin::FrameInputs& inputs) override {
-        if (technique == kLpv) return lpv_.addPasses(graph, inputs);
+        if (technique == kLpv) return lpv_.addPasses(graph, inputs, *host_);
         return {.inScatter = addOctavesPass(graph, inputs, octaves_), .surfaceRadiance = {}};
     }
     fg::TextureHandle addPostPasses(fg::FrameGraph&, const plugin::FrameInputs&,
@@ -57,6 +58,7 @@ public:
     void destroy() override { delete this; }
 
 private:
+    plugin::Host* host_ = nullptr;
     OctavesSettings octaves_{};
     LpvTechnique lpv_;
     std::vector<PresetEntry> presets_ = [] {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <string>
 
 #include "framegraph/hash.h"
 #include "volumetric_gi/lpv/lattice_params.h"
@@ -163,10 +164,17 @@ fg::BufferHandle LpvTechnique::addLinks(fg::FrameGraph& graph,
 }
 
 fg::BufferHandle LpvTechnique::addSources(fg::FrameGraph& graph, const plugin::FrameInputs& inputs,
-                                          const Lattice& lattice) {
+                                          const Lattice& lattice, plugin::Host& host) {
     const RsmPlan plan =
         planRsm({inputs.lightData, inputs.lights.lightCount}, boundsOf(inputs.scene),
                 settings_.rsmSize, settings_.rsmLights, settings_.rsmRectPoints);
+    if (plan.lightsLeftOut > 0 && plan.lightsLeftOut != saidLeftOut_)
+        host.log(("lpv: " + std::to_string(plan.lightsLeftOut) + " of " +
+                  std::to_string(inputs.lights.lightCount) +
+                  " lights light directly alone: gi.lpv.rsmLights is " +
+                  std::to_string(settings_.rsmLights))
+                     .c_str());
+    saidLeftOut_ = plan.lightsLeftOut;
     gpu::LpvInjectParams inject{};
     for (int c = 0; c < 3; ++c)
         inject.scale[c] =
@@ -298,7 +306,8 @@ fg::BufferHandle LpvTechnique::addSteps(fg::FrameGraph& graph, const Lattice& la
 }
 
 plugin::FrameOutputs LpvTechnique::addPasses(fg::FrameGraph& graph,
-                                             const plugin::FrameInputs& inputs) {
+                                             const plugin::FrameInputs& inputs,
+                                             plugin::Host& host) {
     const Bounds bounds = boundsOf(inputs.scene);
     if (bounds.empty() || inputs.lights.lightCount == 0) return {};
     params_ = placeLattice(bounds, settings_.resolution);
@@ -310,7 +319,7 @@ plugin::FrameOutputs LpvTechnique::addPasses(fg::FrameGraph& graph,
     Lattice lattice;
     lattice.medium = addMedium(graph, inputs);
     lattice.links = addLinks(graph, inputs);
-    lattice.sources = addSources(graph, inputs, lattice);
+    lattice.sources = addSources(graph, inputs, lattice, host);
     lattice.flux = addSteps(graph, lattice, sourceKey(inputs));
     const LatticeLight light = addLatticeLight(graph, params_, lattice.medium, lattice.sources,
                                                lattice.links, lattice.flux);

@@ -13,7 +13,9 @@ class LpvTechnique {
 public:
     [[nodiscard]] LpvSettings& settings() { return settings_; }
     /// Light of the lattice on surfaces and in media, as far as `inputs.terms` asks for it.
-    plugin::FrameOutputs addPasses(fg::FrameGraph& graph, const plugin::FrameInputs& inputs);
+    /// Says once through `host` how many lights have no map.
+    plugin::FrameOutputs addPasses(fg::FrameGraph& graph, const plugin::FrameInputs& inputs,
+                                   plugin::Host& host);
 
 private:
     struct Lattice {
@@ -22,15 +24,16 @@ private:
     fg::BufferHandle addMedium(fg::FrameGraph& graph, const plugin::FrameInputs& inputs) const;
     fg::BufferHandle addLinks(fg::FrameGraph& graph, const plugin::FrameInputs& inputs) const;
     fg::BufferHandle addSources(fg::FrameGraph& graph, const plugin::FrameInputs& inputs,
-                                const Lattice& lattice);
+                                const Lattice& lattice, plugin::Host& host);
     fg::BufferHandle addSteps(fg::FrameGraph& graph, const Lattice& lattice, uint64_t key);
     [[nodiscard]] uint64_t sourceKey(const plugin::FrameInputs& inputs) const;
 
     LpvSettings settings_{};
     gpu::LpvParams params_{};
     uint64_t cells_ = 0;
-    uint64_t latticeKey_ = 0; // of place and size
-    uint64_t stateKey_ = 0;   // sourceKey() of what is in the flux buffers
+    uint64_t latticeKey_ = 0;  // of place and size
+    uint32_t saidLeftOut_ = 0; // lights without maps, when it was last said
+    uint64_t stateKey_ = 0;    // sourceKey() of what is in the flux buffers
 };
 
 } // namespace tyndall::volumetric_gi
