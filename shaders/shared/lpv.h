@@ -62,7 +62,7 @@ struct LpvInjectParams {
     uint light;      // index into `Lights`
     float share;     // of the light's power that this map's point of the light stands for
     float texelArea; // m², parallel views; 0: a perspective view, whose texels have solid angles
-    float radius;    // metres around the light's point in which nothing is lit: a lamp's own ball
+    uint padding0;
 };
 
 TYNDALL_SHARED_END

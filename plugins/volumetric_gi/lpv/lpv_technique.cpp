@@ -7,6 +7,7 @@
 
 #include "framegraph/hash.h"
 #include "volumetric_gi/lpv/lattice_params.h"
+#include "volumetric_gi/lpv/lpv_injection.h"
 #include "volumetric_gi/lpv/lpv_light.h"
 
 namespace tyndall::volumetric_gi {
@@ -42,37 +43,6 @@ gpu::LpvParams placeLattice(const Bounds& bounds, int resolution) {
     }
     const dvec3 lowest = bounds.minimum - cell * dvec3(1.001, 1.0013, 1.0017);
     return latticeParams(size, 0, vec3(lowest), float(cell));
-}
-
-struct InjectData {
-    ViewResources view;
-    LightResources lights;
-    MediaResources media;
-    GBuffer surfaces;
-    fg::BufferHandle medium, links, deposits;
-    gpu::LpvParams params;
-    gpu::LpvInjectParams inject;
-    bool scatter, reflect;
-};
-
-void recordInject(const InjectData& data, fg::PassContext& context) {
-    const bool media = data.media.count > 0;
-    auto command =
-        context.compute("gi/lpv/inject.comp",
-                        {{"MEDIA", media}, {"SCATTER", data.scatter}, {"REFLECT", data.reflect}});
-    bindView(command, data.view);
-    command.bind("Lights", data.lights.lights);
-    if (media) bindMedia(command, data.media);
-    command.params(data.params)
-        .params(data.inject, "Inject")
-        .bind("LpvMedium", data.medium)
-        .bind("LpvLinks", data.links)
-        .bind("LpvDeposits", data.deposits)
-        .bind("rsmDepth", data.surfaces.depth)
-        .bind("rsmNormal", data.surfaces.normal)
-        .bind("rsmBase", data.surfaces.base)
-        .bind("rsmMaterial", data.surfaces.material)
-        .dispatchOver(uint32_t(data.view.width), uint32_t(data.view.height));
 }
 
 } // namespace
@@ -180,82 +150,15 @@ fg::BufferHandle LpvTechnique::addSources(fg::FrameGraph& graph, const plugin::F
         inject.scale[c] =
             plan.power[c] > kLeastPower ? float(double(1 << 30) / plan.power[c]) : 0.0f;
 
-    struct Clear {
-        fg::BufferHandle deposits;
-    };
-    fg::BufferHandle deposits =
-        graph
-            .addPass<Clear>(
-                "gi.lpv.clear",
-                [&](fg::Builder& builder, Clear& data) {
-                    data.deposits = builder.create(
-                        "gi.lpv.deposits",
-                        fg::BufferDesc{cells_ * gpu::kLpvDepositPlanes * sizeof(int32_t)},
-                        fg::Access::TransferWrite);
-                },
-                [](const Clear& data, fg::PassContext& context) {
-                    context.clearBuffer(data.deposits, 0);
-                })
-            .deposits;
+    fg::BufferHandle deposits = addEmptyDeposits(graph, cells_);
     for (const RsmView& rsm : plan.views) {
-        ViewResources view;
-        const GBuffer surfaces = inputs.surfaces->addGBuffer(graph, "gi.rsm", rsm.view, view);
         inject.light = rsm.light;
         inject.share = rsm.share;
         inject.texelArea = rsm.texelArea;
-        deposits = graph
-                       .addPass<InjectData>(
-                           "gi.lpv.inject",
-                           [&](fg::Builder& builder, InjectData& data) {
-                               data.view = view;
-                               data.lights.lights = builder.read(inputs.lights.lights);
-                               data.media = inputs.media;
-                               if (inputs.media.count > 0)
-                                   data.media = readMedia(builder, inputs.media);
-                               data.surfaces.depth = builder.read(surfaces.depth);
-                               data.surfaces.normal = builder.read(surfaces.normal);
-                               data.surfaces.base = builder.read(surfaces.base);
-                               data.surfaces.material = builder.read(surfaces.material);
-                               data.medium = builder.read(lattice.medium);
-                               data.links = builder.read(lattice.links);
-                               data.deposits = builder.write(deposits);
-                               data.params = params_;
-                               data.inject = inject;
-                               data.scatter = settings_.scattered && inputs.media.count > 0;
-                               data.reflect = settings_.reflected;
-                           },
-                           [](const InjectData& data, fg::PassContext& context) {
-                               recordInject(data, context);
-                           })
-                       .deposits;
+        deposits = addInjection(graph, inputs, settings_, rsm.view,
+                                {lattice.medium, lattice.links, deposits, params_, inject});
     }
-    struct Collect {
-        fg::BufferHandle deposits, sources;
-        gpu::LpvParams params;
-        gpu::LpvInjectParams inject;
-        uint32_t cells;
-    };
-    return graph
-        .addPass<Collect>(
-            "gi.lpv.collect",
-            [&](fg::Builder& builder, Collect& data) {
-                data.deposits = builder.read(deposits);
-                data.sources =
-                    builder.create("gi.lpv.sources",
-                                   fg::BufferDesc{cells_ * sizeof(vec4) * gpu::kLpvSourceVectors});
-                data.params = params_;
-                data.inject = inject;
-                data.cells = uint32_t(cells_);
-            },
-            [](const Collect& data, fg::PassContext& context) {
-                context.compute("gi/lpv/collect.comp")
-                    .params(data.params)
-                    .params(data.inject, "Inject")
-                    .bind("LpvDeposits", data.deposits)
-                    .bind("LpvSources", data.sources)
-                    .dispatchOver(data.cells);
-            })
-        .sources;
+    return addCollection(graph, {{}, {}, deposits, params_, inject}, cells_);
 }
 
 /// Light goes on from where the last frame left it only where nothing has changed since: a picture never shows what was.

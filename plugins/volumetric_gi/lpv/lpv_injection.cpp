@@ -1,0 +1,112 @@
+#include "volumetric_gi/lpv/lpv_injection.h"
+
+namespace tyndall::volumetric_gi {
+namespace {
+
+struct InjectData {
+    ViewResources view;
+    LightResources lights;
+    MediaResources media;
+    GBuffer surfaces;
+    Injection injection;
+    bool scatter, reflect;
+};
+
+void recordInject(const InjectData& data, fg::PassContext& context) {
+    const bool media = data.media.count > 0;
+    auto command =
+        context.compute("gi/lpv/inject.comp",
+                        {{"MEDIA", media}, {"SCATTER", data.scatter}, {"REFLECT", data.reflect}});
+    bindView(command, data.view);
+    command.bind("Lights", data.lights.lights);
+    if (media) bindMedia(command, data.media);
+    command.params(data.injection.params)
+        .params(data.injection.inject, "Inject")
+        .bind("LpvMedium", data.injection.medium)
+        .bind("LpvLinks", data.injection.links)
+        .bind("LpvDeposits", data.injection.deposits)
+        .bind("rsmDepth", data.surfaces.depth)
+        .bind("rsmNormal", data.surfaces.normal)
+        .bind("rsmBase", data.surfaces.base)
+        .bind("rsmMaterial", data.surfaces.material)
+        .dispatchOver(uint32_t(data.view.width), uint32_t(data.view.height));
+}
+
+} // namespace
+
+fg::BufferHandle addEmptyDeposits(fg::FrameGraph& graph, uint64_t cells) {
+    struct Data {
+        fg::BufferHandle deposits;
+    };
+    return graph
+        .addPass<Data>(
+            "gi.lpv.clear",
+            [&](fg::Builder& builder, Data& data) {
+                data.deposits =
+                    builder.create("gi.lpv.deposits",
+                                   fg::BufferDesc{cells * gpu::kLpvDepositPlanes * sizeof(int32_t)},
+                                   fg::Access::TransferWrite);
+            },
+            [](const Data& data, fg::PassContext& context) {
+                context.clearBuffer(data.deposits, 0);
+            })
+        .deposits;
+}
+
+fg::BufferHandle addInjection(fg::FrameGraph& graph, const plugin::FrameInputs& inputs,
+                              const LpvSettings& settings, const plugin::SurfaceView& from,
+                              const Injection& injection) {
+    ViewResources view;
+    const GBuffer surfaces = inputs.surfaces->addGBuffer(graph, "gi.rsm", from, view);
+    return graph
+        .addPass<InjectData>(
+            "gi.lpv.inject",
+            [&](fg::Builder& builder, InjectData& data) {
+                data.view = view;
+                data.lights.lights = builder.read(inputs.lights.lights);
+                data.media = inputs.media;
+                if (inputs.media.count > 0) data.media = readMedia(builder, inputs.media);
+                data.surfaces.depth = builder.read(surfaces.depth);
+                data.surfaces.normal = builder.read(surfaces.normal);
+                data.surfaces.base = builder.read(surfaces.base);
+                data.surfaces.material = builder.read(surfaces.material);
+                data.injection = injection;
+                data.injection.medium = builder.read(injection.medium);
+                data.injection.links = builder.read(injection.links);
+                data.injection.deposits = builder.write(injection.deposits);
+                data.scatter = settings.scattered && inputs.media.count > 0;
+                data.reflect = settings.reflected;
+            },
+            [](const InjectData& data, fg::PassContext& context) { recordInject(data, context); })
+        .injection.deposits;
+}
+
+fg::BufferHandle addCollection(fg::FrameGraph& graph, const Injection& injection, uint64_t cells) {
+    struct Data {
+        Injection injection;
+        fg::BufferHandle sources;
+        uint32_t cells;
+    };
+    return graph
+        .addPass<Data>(
+            "gi.lpv.collect",
+            [&](fg::Builder& builder, Data& data) {
+                data.injection = injection;
+                data.injection.deposits = builder.read(injection.deposits);
+                data.sources =
+                    builder.create("gi.lpv.sources",
+                                   fg::BufferDesc{cells * sizeof(vec4) * gpu::kLpvSourceVectors});
+                data.cells = uint32_t(cells);
+            },
+            [](const Data& data, fg::PassContext& context) {
+                context.compute("gi/lpv/collect.comp")
+                    .params(data.injection.params)
+                    .params(data.injection.inject, "Inject")
+                    .bind("LpvDeposits", data.injection.deposits)
+                    .bind("LpvSources", data.sources)
+                    .dispatchOver(data.cells);
+            })
+        .sources;
+}
+
+} // namespace tyndall::volumetric_gi

@@ -1,0 +1,28 @@
+#pragma once
+// Light into the lattice: from the texels of reflective shadow maps into fixed-point deposits, and from these into the sources of a step.
+
+#include "plugin/plugin_api.h"
+#include "shared/lpv.h"
+#include "volumetric_gi/lpv/lpv_settings.h"
+
+namespace tyndall::volumetric_gi {
+
+struct Injection {
+    fg::BufferHandle medium, links, deposits;
+    gpu::LpvParams params;
+    gpu::LpvInjectParams inject;
+};
+
+/// LpvDeposits, all 0.
+[[nodiscard]] fg::BufferHandle addEmptyDeposits(fg::FrameGraph& graph, uint64_t cells);
+
+/// Draws one reflective shadow map and adds its light to the deposits; returns their next version.
+[[nodiscard]] fg::BufferHandle
+addInjection(fg::FrameGraph& graph, const plugin::FrameInputs& inputs, const LpvSettings& settings,
+             const plugin::SurfaceView& from, const Injection& injection);
+
+/// LpvSources of all deposits; medium and links are not needed.
+[[nodiscard]] fg::BufferHandle addCollection(fg::FrameGraph& graph, const Injection& injection,
+                                             uint64_t cells);
+
+} // namespace tyndall::volumetric_gi
