@@ -13,7 +13,7 @@
 namespace tyndall::plugin {
 
 /// Raised by one whenever anything that crosses the boundary changes its meaning or layout.
-inline constexpr uint32_t kAbiVersion = 2;
+inline constexpr uint32_t kAbiVersion = 3;
 
 /// One technique that a plugin offers: the name that `--gi` takes, and the terms that it computes.
 struct TechniqueInfo {
@@ -47,9 +47,10 @@ protected:
 struct SceneChange {
     uint64_t geometry, materials, lights, media, environment;
     uint32_t lightCount, mediumCount;
-    float boundsMinimum[4],
-        boundsMaximum
-            [4]; // of surfaces and of media with an end, render space; minimum > maximum: nothing
+    // Of surfaces and of media with an end, render space; minimum > maximum: nothing.
+    float boundsMinimum[4], boundsMaximum[4];
+    // The same without the landscape that all else stands in (Scene::contentBounds).
+    float contentMinimum[4], contentMaximum[4];
 };
 
 /// A square picture of the surfaces from a point or, where `yfov` is 0, along parallel rays. It looks along -Z of `renderFromView`,

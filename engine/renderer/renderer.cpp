@@ -52,6 +52,7 @@ Result<void> Renderer::Impl::updateScene(const FrameRequest& request, const dmat
         std::tie(seenBounds.structure, seenBounds.transforms, seenBounds.meshes,
                  seenBounds.media)) {
         sceneBounds = scene->worldBounds();
+        contentBounds = scene->contentBounds();
         seenBounds = now;
     }
     const dvec3 eye(worldFromCamera[3]);
@@ -125,6 +126,7 @@ Result<void> Renderer::setScene(const Scene& scene) {
     if (impl_->scene != &scene) impl_->seenBounds = {};
     impl_->scene = &scene;
     impl_->sceneBounds = scene.worldBounds();
+    impl_->contentBounds = scene.contentBounds();
     impl_->average = {};
     return {};
 }
@@ -169,13 +171,16 @@ Result<FrameResult> Renderer::renderFrame(const FrameRequest& request) {
                            uint32_t(r.lights.lights().size()),
                            uint32_t(r.scene->media.size()),
                            {},
+                           {},
+                           {},
                            {}};
-    for (int axis = 0; axis < 3; ++axis) {
-        r.order.sceneChange.boundsMinimum[axis] =
-            float(r.sceneBounds.minimum[axis] - r.renderOrigin[axis]);
-        r.order.sceneChange.boundsMaximum[axis] =
-            float(r.sceneBounds.maximum[axis] - r.renderOrigin[axis]);
-    }
+    const auto toRender = [&](const dvec3& p, float(&out)[4]) {
+        for (int axis = 0; axis < 3; ++axis) out[axis] = float(p[axis] - r.renderOrigin[axis]);
+    };
+    toRender(r.sceneBounds.minimum, r.order.sceneChange.boundsMinimum);
+    toRender(r.sceneBounds.maximum, r.order.sceneChange.boundsMaximum);
+    toRender(r.contentBounds.minimum, r.order.sceneChange.contentMinimum);
+    toRender(r.contentBounds.maximum, r.order.sceneChange.contentMaximum);
     for (size_t i = 0; i < r.plugins.count(); ++i)
         r.plugins.plugin(i).sceneChanged(r.order.sceneChange);
 
@@ -187,8 +192,8 @@ Result<FrameResult> Renderer::renderFrame(const FrameRequest& request) {
     }
     fg::FrameGraph& graph = r.executor.beginFrame();
     r.images = recordFrame(graph,
-                           {r.surfaces, r.lights, r.media, r.blended, r.environment, r.plugins, r.drawer,
-                            r.gbufferSettings, r.surfaceLightSettings, r.postSettings},
+                           {r.surfaces, r.lights, r.media, r.blended, r.environment, r.plugins,
+                            r.drawer, r.gbufferSettings, r.surfaceLightSettings, r.postSettings},
                            r.order);
     r.inspected = {};
     if (inspecting) {

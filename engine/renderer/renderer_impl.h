@@ -51,7 +51,7 @@ struct Renderer::Impl {
     std::vector<Technique> techniques;
 
     const Scene* scene = nullptr;
-    Bounds sceneBounds;       // world
+    Bounds sceneBounds, contentBounds; // world
     SceneVersions seenBounds; // of what sceneBounds was made from
     dvec3 renderOrigin{0};
     std::vector<Bounds> surfaceBounds;

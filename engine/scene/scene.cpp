@@ -1,5 +1,7 @@
 #include "scene/scene.h"
 
+#include <algorithm>
+
 #include "core/check.h"
 
 namespace tyndall {
@@ -55,22 +57,57 @@ std::vector<bool> Scene::worldVisibility() const {
     return visible;
 }
 
-Bounds Scene::worldBounds() const {
+/// Of each visible mesh, instance and bounded medium; none is empty.
+std::vector<Bounds> Scene::worldBoxes() const {
     const std::vector<dmat4> world = worldTransforms();
     const std::vector<bool> visible = worldVisibility();
-    Bounds bounds;
+    std::vector<Bounds> boxes;
+    const auto add = [&](const Bounds& local, const dmat4& worldFromLocal) {
+        if (!local.empty()) boxes.push_back(local.transformed(worldFromLocal));
+    };
     for (size_t i = 0; i < nodes.size(); ++i) {
         if (!visible[i]) continue;
         const Node& node = nodes[i];
-        Bounds local;
-        for (const int mesh : node.meshes) local.include(meshes[size_t(mesh)].bounds);
-        if (node.instances.empty()) bounds.include(local.transformed(world[i]));
-        for (const dmat4& instance : node.instances)
-            bounds.include(local.transformed(world[i] * instance));
-        if (node.medium != kNone)
-            bounds.include(localBounds(media[size_t(node.medium)]).transformed(world[i]));
+        for (const int mesh : node.meshes) {
+            const Bounds& local = meshes[size_t(mesh)].bounds;
+            if (node.instances.empty()) add(local, world[i]);
+            for (const dmat4& instance : node.instances) add(local, world[i] * instance);
+        }
+        if (node.medium != kNone) add(localBounds(media[size_t(node.medium)]), world[i]);
     }
+    return boxes;
+}
+
+Bounds Scene::worldBounds() const {
+    Bounds bounds;
+    for (const Bounds& box : worldBoxes()) bounds.include(box);
     return bounds;
+}
+
+Bounds Scene::contentBounds() const {
+    constexpr double kManyTimes = 6;
+    constexpr double kFlatScene = 0.25, kFlatBox = 0.05; // least extent over longest
+    const auto longest = [](const Bounds& b) {
+        const dvec3 extent = b.extent();
+        return std::max({extent.x, extent.y, extent.z});
+    };
+    const auto isFlat = [&](const Bounds& b, double ratio) {
+        const dvec3 extent = b.extent();
+        return std::min({extent.x, extent.y, extent.z}) <= ratio * longest(b);
+    };
+    std::vector<Bounds> boxes = worldBoxes();
+    std::sort(boxes.begin(), boxes.end(),
+              [&](const Bounds& a, const Bounds& b) { return longest(a) < longest(b); });
+    std::vector<Bounds> smaller(1); // of all boxes before each
+    for (const Bounds& box : boxes) {
+        smaller.push_back(smaller.back());
+        smaller.back().include(box);
+    }
+    const Bounds& all = smaller.back();
+    if (all.empty() || !isFlat(all, kFlatScene)) return all;
+    for (size_t i = boxes.size(); i-- > 1 && isFlat(boxes[i], kFlatBox);)
+        if (longest(boxes[i]) > kManyTimes * longest(smaller[i])) return smaller[i];
+    return all;
 }
 
 } // namespace tyndall

@@ -224,6 +224,12 @@ struct Scene {
     [[nodiscard]] std::vector<bool> worldVisibility() const;
     /// Of all visible meshes and bounded media.
     [[nodiscard]] Bounds worldBounds() const;
+    /// worldBounds() without the landscape: without what is flat and many times longer than all that is smaller, in scenes that are
+    /// flat themselves.
+    [[nodiscard]] Bounds contentBounds() const;
+
+private:
+    [[nodiscard]] std::vector<Bounds> worldBoxes() const;
 };
 
 } // namespace tyndall

@@ -29,10 +29,11 @@ TYNDALL_CONST uint kLpvDepositPlanes = 15u;
 
 // LpvLinks
 TYNDALL_CONST uint kLpvBlocked = 0u;     // bit j: a surface stands in the way to the neighbour in direction j
-TYNDALL_CONST uint kLpvReflectance = 1u; // 3, of red, green, blue: sum over the surfaces, in units of 1/kLpvReflectanceUnit
-TYNDALL_CONST uint kLpvSurfaces = 4u;    // how many crossings are in that sum
-TYNDALL_CONST uint kLpvNearest = 5u;     // 6, of the first surface towards +x -x +y -y +z -z before the next cell: 4096 less its distance in
+TYNDALL_CONST uint kLpvNearest = 1u;     // 6, of the first surface towards +x -x +y -y +z -z before the next cell: 4096 less its distance in
                                          // 4095ths of a cell << 20, and its normal, octahedral, 10 bits each; 0: none
+TYNDALL_CONST uint kLpvSidePlanes = 7u;  // those before: what tells on which side a point lies
+TYNDALL_CONST uint kLpvReflectance = 7u; // 3, of red, green, blue: sum over the surfaces, in units of 1/kLpvReflectanceUnit
+TYNDALL_CONST uint kLpvSurfaces = 10u;   // how many crossings are in that sum
 TYNDALL_CONST uint kLpvLinkPlanes = 11u;
 TYNDALL_CONST uint kLpvReflectanceUnit = 1024u;
 
@@ -41,9 +42,23 @@ struct LpvDirection {
     ivec4 offset; // w: class
 };
 
+/// One lattice.
+struct LpvGrid {
+    ivec4 size;  // cells along each axis; w: bit a: what leaves along axis a comes in again on the other side
+    vec4 lowest; // corner of the lattice, render space; w: edge of a cell, metres
+    ivec4 place; // among several: x: first layer of the light's textures, y: first element of the links, z: bit a: along axis a the next coarser
+                 // lattice goes on
+};
+
+/// The lattices that light is looked up in, the finest first.
+TYNDALL_CONST uint kLpvMostLevels = 4u;
+struct LpvLevels {
+    LpvGrid grids[4];
+    ivec4 count; // x
+};
+
 struct LpvParams {
-    ivec4 size;        // cells along each axis; w: bit a: what leaves along axis a comes in again on the other side
-    vec4 lowest;       // corner of the lattice, render space; w: edge of a cell, metres
+    LpvGrid grid;
     vec4 classWeights; // of all directions of a class together
     LpvDirection directions[26];
 };

@@ -10,8 +10,8 @@ namespace tyndall::volumetric_gi {
 [[nodiscard]] inline gpu::LpvParams latticeParams(const ivec3& size, int repeats,
                                                   const vec3& lowest = vec3(0), float cell = 1) {
     gpu::LpvParams params{};
-    params.size = {size, repeats};
-    params.lowest = {lowest, cell};
+    params.grid.size = {size, repeats};
+    params.grid.lowest = {lowest, cell};
     for (size_t j = 0; j < kLatticeDirections; ++j) {
         const LatticeDirection& d = latticeDirections()[j];
         params.directions[j].unit = vec4(vec3(d.unit), float(d.weight));

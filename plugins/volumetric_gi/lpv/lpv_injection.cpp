@@ -53,24 +53,32 @@ fg::BufferHandle addEmptyDeposits(fg::FrameGraph& graph, uint64_t cells) {
         .deposits;
 }
 
+Rsm addRsm(fg::FrameGraph& graph, const plugin::FrameInputs& inputs, const RsmView& from) {
+    Rsm rsm;
+    rsm.surfaces = inputs.surfaces->addGBuffer(graph, "gi.rsm", from.view, rsm.view);
+    rsm.from = from;
+    return rsm;
+}
+
 fg::BufferHandle addInjection(fg::FrameGraph& graph, const plugin::FrameInputs& inputs,
-                              const LpvSettings& settings, const plugin::SurfaceView& from,
+                              const LpvSettings& settings, const Rsm& rsm,
                               const Injection& injection) {
-    ViewResources view;
-    const GBuffer surfaces = inputs.surfaces->addGBuffer(graph, "gi.rsm", from, view);
     return graph
         .addPass<InjectData>(
             "gi.lpv.inject",
             [&](fg::Builder& builder, InjectData& data) {
-                data.view = view;
+                data.view = rsm.view;
                 data.lights.lights = builder.read(inputs.lights.lights);
                 data.media = inputs.media;
                 if (inputs.media.count > 0) data.media = readMedia(builder, inputs.media);
-                data.surfaces.depth = builder.read(surfaces.depth);
-                data.surfaces.normal = builder.read(surfaces.normal);
-                data.surfaces.base = builder.read(surfaces.base);
-                data.surfaces.material = builder.read(surfaces.material);
+                data.surfaces.depth = builder.read(rsm.surfaces.depth);
+                data.surfaces.normal = builder.read(rsm.surfaces.normal);
+                data.surfaces.base = builder.read(rsm.surfaces.base);
+                data.surfaces.material = builder.read(rsm.surfaces.material);
                 data.injection = injection;
+                data.injection.inject.light = rsm.from.light;
+                data.injection.inject.share = rsm.from.share;
+                data.injection.inject.texelArea = rsm.from.texelArea;
                 data.injection.medium = builder.read(injection.medium);
                 data.injection.links = builder.read(injection.links);
                 data.injection.deposits = builder.write(injection.deposits);

@@ -4,22 +4,33 @@
 #include "plugin/plugin_api.h"
 #include "shared/lpv.h"
 #include "volumetric_gi/lpv/lpv_settings.h"
+#include "volumetric_gi/rsm/rsm_views.h"
 
 namespace tyndall::volumetric_gi {
 
 struct Injection {
     fg::BufferHandle medium, links, deposits;
     gpu::LpvParams params;
-    gpu::LpvInjectParams inject;
+    gpu::LpvInjectParams inject; // its scale; addInjection() fills in the rest
 };
+
+/// A reflective shadow map.
+struct Rsm {
+    ViewResources view;
+    GBuffer surfaces;
+    RsmView from;
+};
+[[nodiscard]] Rsm addRsm(fg::FrameGraph& graph, const plugin::FrameInputs& inputs,
+                         const RsmView& from);
 
 /// LpvDeposits, all 0.
 [[nodiscard]] fg::BufferHandle addEmptyDeposits(fg::FrameGraph& graph, uint64_t cells);
 
-/// Draws one reflective shadow map and adds its light to the deposits; returns their next version.
-[[nodiscard]] fg::BufferHandle
-addInjection(fg::FrameGraph& graph, const plugin::FrameInputs& inputs, const LpvSettings& settings,
-             const plugin::SurfaceView& from, const Injection& injection);
+/// Adds a map's light to the deposits; returns their next version.
+[[nodiscard]] fg::BufferHandle addInjection(fg::FrameGraph& graph,
+                                            const plugin::FrameInputs& inputs,
+                                            const LpvSettings& settings, const Rsm& rsm,
+                                            const Injection& injection);
 
 /// LpvSources of all deposits; medium and links are not needed.
 [[nodiscard]] fg::BufferHandle addCollection(fg::FrameGraph& graph, const Injection& injection,

@@ -4,20 +4,37 @@ namespace tyndall::volumetric_gi {
 namespace {
 
 LatticeLight readLight(fg::Builder& builder, const LatticeLight& light) {
-    return {builder.read(light.red), builder.read(light.green), builder.read(light.blue)};
+    return {builder.read(light.red), builder.read(light.green), builder.read(light.blue),
+            builder.read(light.sides)};
 }
 
-template <typename Command> Command& bindLight(Command& command, const LatticeLight& light) {
-    return command.bind("redLight", light.red)
+/// For shaders that include gi/lpv/lookup.glsl.
+template <typename Command>
+Command& bindLight(Command& command, const LatticeLight& light, const gpu::LpvLevels& levels) {
+    return command.params(levels, "Levels")
+        .bind("LpvLinks", light.sides)
+        .bind("redLight", light.red)
         .bind("greenLight", light.green)
         .bind("blueLight", light.blue);
 }
 
+LatticeLight createLight(fg::Builder& builder, const SharedPlaces& places) {
+    const fg::TextureDesc desc =
+        fg::texture3D(fg::Format::RGBA32F, places.across.x, places.across.y, places.layers);
+    return {builder.create("gi.lpv.red", desc), builder.create("gi.lpv.green", desc),
+            builder.create("gi.lpv.blue", desc),
+            builder.create("gi.lpv.sides", fg::BufferDesc{places.links * sizeof(uint32_t)})};
+}
+
+LatticeLight writeLight(fg::Builder& builder, const LatticeLight& light) {
+    return {builder.write(light.red), builder.write(light.green), builder.write(light.blue),
+            builder.write(light.sides)};
+}
+
 } // namespace
 
-LatticeLight addLatticeLight(fg::FrameGraph& graph, const gpu::LpvParams& params,
-                             fg::BufferHandle medium, fg::BufferHandle sources,
-                             fg::BufferHandle links, fg::BufferHandle flux) {
+LatticeLight addLatticeLight(fg::FrameGraph& graph, const Lattice& lattice,
+                             const SharedPlaces& places, const LatticeLight& others) {
     struct Data {
         fg::BufferHandle medium, sources, links, flux;
         LatticeLight light;
@@ -27,39 +44,40 @@ LatticeLight addLatticeLight(fg::FrameGraph& graph, const gpu::LpvParams& params
         .addPass<Data>(
             "gi.lpv.resolve",
             [&](fg::Builder& builder, Data& data) {
-                data.medium = builder.read(medium);
-                data.sources = builder.read(sources);
-                data.links = builder.read(links);
-                data.flux = builder.read(flux);
-                const fg::TextureDesc desc =
-                    fg::texture3D(fg::Format::RGBA32F, params.size.x, params.size.y, params.size.z);
-                data.light = {builder.create("gi.lpv.red", desc),
-                              builder.create("gi.lpv.green", desc),
-                              builder.create("gi.lpv.blue", desc)};
-                data.params = params;
+                data.medium = builder.read(lattice.medium);
+                data.sources = builder.read(lattice.sources);
+                data.links = builder.read(lattice.links);
+                data.flux = builder.read(lattice.flux);
+                data.light =
+                    others.red ? writeLight(builder, others) : createLight(builder, places);
+                data.params = lattice.level.params;
             },
             [](const Data& data, fg::PassContext& context) {
-                auto command = context.compute("gi/lpv/resolve.comp");
-                command.params(data.params)
+                context.compute("gi/lpv/resolve.comp")
+                    .params(data.params)
                     .bind("LpvMedium", data.medium)
                     .bind("LpvSources", data.sources)
                     .bind("LpvLinks", data.links)
-                    .bind("LpvFlux", data.flux);
-                bindLight(command, data.light).dispatchOver(data.light.red);
+                    .bind("LpvFlux", data.flux)
+                    .bind("LpvSides", data.light.sides)
+                    .bind("redLight", data.light.red)
+                    .bind("greenLight", data.light.green)
+                    .bind("blueLight", data.light.blue)
+                    .dispatchOver(uint32_t(data.params.grid.size.x),
+                                  uint32_t(data.params.grid.size.y),
+                                  uint32_t(data.params.grid.size.z));
             })
         .light;
 }
 
 fg::TextureHandle addSurfaceLookup(fg::FrameGraph& graph, const plugin::FrameInputs& inputs,
-                                   const gpu::LpvParams& params, fg::BufferHandle links,
-                                   const LatticeLight& light) {
+                                   const gpu::LpvLevels& levels, const LatticeLight& light) {
     struct Data {
         ViewResources view;
         GBuffer gbuffer;
         LatticeLight light;
-        fg::BufferHandle links;
         fg::TextureHandle radiance;
-        gpu::LpvParams params;
+        gpu::LpvLevels levels;
     };
     return graph
         .addPass<Data>(
@@ -71,18 +89,15 @@ fg::TextureHandle addSurfaceLookup(fg::FrameGraph& graph, const plugin::FrameInp
                 data.gbuffer.base = builder.read(inputs.gbuffer.base);
                 data.gbuffer.material = builder.read(inputs.gbuffer.material);
                 data.light = readLight(builder, light);
-                data.links = builder.read(links);
                 data.radiance = builder.create(
                     "gi.lpv.surfaceRadiance",
                     fg::texture2D(fg::Format::RGBA32F, inputs.view.width, inputs.view.height));
-                data.params = params;
+                data.levels = levels;
             },
             [](const Data& data, fg::PassContext& context) {
                 auto command = context.compute("gi/lpv/surfaces.comp");
                 bindView(command, data.view);
-                bindLight(command, data.light)
-                    .params(data.params)
-                    .bind("LpvLinks", data.links)
+                bindLight(command, data.light, data.levels)
                     .bind("gbufferDepth", data.gbuffer.depth)
                     .bind("gbufferNormal", data.gbuffer.normal)
                     .bind("gbufferBase", data.gbuffer.base)
@@ -94,15 +109,13 @@ fg::TextureHandle addSurfaceLookup(fg::FrameGraph& graph, const plugin::FrameInp
 }
 
 fg::TextureHandle addMediumLookup(fg::FrameGraph& graph, const plugin::FrameInputs& inputs,
-                                  const gpu::LpvParams& params, fg::BufferHandle links,
-                                  const LatticeLight& light) {
+                                  const gpu::LpvLevels& levels, const LatticeLight& light) {
     struct Data {
         ViewResources view;
         MediaResources media;
         LatticeLight light;
-        fg::BufferHandle links;
         fg::TextureHandle depth, inScatter;
-        gpu::LpvParams params;
+        gpu::LpvLevels levels;
     };
     return graph
         .addPass<Data>(
@@ -113,11 +126,10 @@ fg::TextureHandle addMediumLookup(fg::FrameGraph& graph, const plugin::FrameInpu
                 data.media = readMedia(builder, inputs.media);
                 data.depth = builder.read(inputs.gbuffer.depth);
                 data.light = readLight(builder, light);
-                data.links = builder.read(links);
                 data.inScatter = builder.create(
                     "gi.lpv.inScatter",
                     fg::texture2D(fg::Format::RGBA32F, inputs.view.width, inputs.view.height));
-                data.params = params;
+                data.levels = levels;
             },
             [](const Data& data, fg::PassContext& context) {
                 auto command = context.compute("gi/lpv/march.comp",
@@ -125,9 +137,7 @@ fg::TextureHandle addMediumLookup(fg::FrameGraph& graph, const plugin::FrameInpu
                                                 {"MEDIA_KINDS", mediaKinds(data.media, false)}});
                 bindView(command, data.view);
                 bindMedia(command, data.media);
-                bindLight(command, data.light)
-                    .params(data.params)
-                    .bind("LpvLinks", data.links)
+                bindLight(command, data.light, data.levels)
                     .bind("depth", data.depth)
                     .bind("inScatter", data.inScatter)
                     .dispatchOver(data.inScatter);

@@ -3,28 +3,31 @@
 
 #include "plugin/plugin_api.h"
 #include "shared/lpv.h"
+#include "volumetric_gi/lpv/lpv_lattice.h"
 
 namespace tyndall::volumetric_gi {
 
-/// RGBA32F 3D, a texel a cell: vector flux and fluence (w) in W/m², of red, green and blue.
+/// RGBA32F 3D, a texel a cell: vector flux and fluence (w) in W/m², of red, green and blue. Lattices lie one behind the other, as do the first
+/// planes of their links.
 struct LatticeLight {
     fg::TextureHandle red, green, blue;
+    fg::BufferHandle sides;
 };
 
-[[nodiscard]] LatticeLight addLatticeLight(fg::FrameGraph& graph, const gpu::LpvParams& params,
-                                           fg::BufferHandle medium, fg::BufferHandle sources,
-                                           fg::BufferHandle links, fg::BufferHandle flux);
+/// Adds one lattice's light to that of others; null handles where it is the first.
+[[nodiscard]] LatticeLight addLatticeLight(fg::FrameGraph& graph, const Lattice& lattice,
+                                           const SharedPlaces& places, const LatticeLight& others);
 
 /// View-sized RGBA32F nits that leave surfaces towards the eye.
 [[nodiscard]] fg::TextureHandle addSurfaceLookup(fg::FrameGraph& graph,
                                                  const plugin::FrameInputs& inputs,
-                                                 const gpu::LpvParams& params,
-                                                 fg::BufferHandle links, const LatticeLight& light);
+                                                 const gpu::LpvLevels& levels,
+                                                 const LatticeLight& light);
 
 /// View-sized RGBA32F nits that reach the eye from media. Skipped where there are none.
 [[nodiscard]] fg::TextureHandle addMediumLookup(fg::FrameGraph& graph,
                                                 const plugin::FrameInputs& inputs,
-                                                const gpu::LpvParams& params,
-                                                fg::BufferHandle links, const LatticeLight& light);
+                                                const gpu::LpvLevels& levels,
+                                                const LatticeLight& light);
 
 } // namespace tyndall::volumetric_gi

@@ -4,8 +4,15 @@ namespace tyndall::volumetric_gi {
 namespace {
 
 const SettingDesc kLpvSettings[] = {
-    TYNDALL_INT(LpvSettings, resolution, "gi.lpv.resolution", "Lattice cells", "", 4, 72, 32,
-                "Cells along the longest side of the scene; the others follow from its shape."),
+    TYNDALL_INT(
+        LpvSettings, resolution, "gi.lpv.resolution", "Lattice cells", "", 4, 64, 32,
+        "Cells along the longest side of the finest lattice; the others follow from its shape."),
+    TYNDALL_INT(
+        LpvSettings, cascades, "gi.lpv.cascades", "Lattices", "", 1, 4, 4,
+        "Lattices at most: one around what is in the scene, coarser ones around it out to the landscape."),
+    TYNDALL_FLOAT(
+        LpvSettings, extent, "gi.lpv.extent", "Extent of the finest", "m", 0.0f, 1e6f, 0.0f,
+        "Longest side of the finest lattice; shorter than the scene it follows the camera. 0: from the scene."),
     TYNDALL_INT(LpvSettings, steps, "gi.lpv.steps", "Steps a frame", "", 2, 4096, 96,
                 "Steps that light is propagated in each frame, on from the frame before."),
     TYNDALL_INT(LpvSettings, rsmSize, "gi.lpv.rsmSize", "Map size", "texels", 16, 2048, 128,
@@ -23,6 +30,8 @@ const SettingDesc kLpvSettings[] = {
 
 constexpr PresetEntry kLpvPresets[] = {
     {Quality::Low, "gi.lpv.resolution", "16"},    {Quality::Low, "gi.lpv.steps", "48"},
+    {Quality::Low, "gi.lpv.cascades", "2"},       {Quality::Medium, "gi.lpv.cascades", "3"},
+    {Quality::High, "gi.lpv.cascades", "4"},      {Quality::Ultra, "gi.lpv.cascades", "4"},
     {Quality::Low, "gi.lpv.rsmSize", "64"},       {Quality::Low, "gi.lpv.rsmRectPoints", "1"},
     {Quality::Medium, "gi.lpv.resolution", "24"}, {Quality::Medium, "gi.lpv.steps", "64"},
     {Quality::Medium, "gi.lpv.rsmSize", "96"},    {Quality::Medium, "gi.lpv.rsmRectPoints", "2"},

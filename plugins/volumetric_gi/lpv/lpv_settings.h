@@ -10,6 +10,8 @@ namespace tyndall::volumetric_gi {
 
 struct LpvSettings {
     int32_t resolution;
+    int32_t cascades;
+    float extent;
     int32_t steps;
     int32_t rsmSize;
     int32_t rsmLights;

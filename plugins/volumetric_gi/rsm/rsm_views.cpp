@@ -12,12 +12,12 @@ constexpr double kWidestSpot = 1.2; // radians from its axis; a wider one gets a
 
 dvec3 rgb(const vec4& v) { return dvec3(v.x, v.y, v.z); }
 
-/// Watts, at most.
-dvec3 powerOf(const gpu::LightData& light, const Bounds& bounds) {
+/// Watts that reach `box`, at most.
+dvec3 powerOf(const gpu::LightData& light, const Bounds& box) {
     const dvec3 intensity = rgb(light.intensity);
     switch (light.type) {
     case gpu::kLightDirectional: {
-        const double side = glm::length(bounds.extent());
+        const double side = glm::length(box.extent());
         return intensity * side * side;
     }
     case gpu::kLightSpot: return intensity * 2.0 * kPi * (1 - double(light.axisY.w));
@@ -36,16 +36,24 @@ dmat4 lookingAlong(const dvec3& position, const dvec3& forward) {
 
 class Planner {
 public:
-    Planner(const Bounds& bounds, int side, RsmPlan& plan)
-        : centre_(0.5 * (bounds.minimum + bounds.maximum)),
-          radius_(0.5 * glm::length(bounds.extent())), side_(side), plan_(plan) {}
+    Planner(const Bounds& bounds, std::span<const Bounds> boxes, int side, RsmPlan& plan)
+        : bounds_(bounds), boxes_(boxes), radius_(0.5 * glm::length(bounds.extent())), side_(side),
+          plan_(plan) {}
 
     void addParallel(uint32_t light, const dvec3& travel) {
-        RsmView v = make(light, lookingAlong(centre_ - 2 * radius_ * travel, travel));
-        v.view.halfHeight = float(radius_);
-        v.view.depthRange = float(4 * radius_);
-        v.texelArea = float(std::pow(2 * radius_ / side_, 2));
-        plan_.views.push_back(v);
+        for (size_t i = 0; i < boxes_.size(); ++i) {
+            const dvec3 centre = boxes_[i].centre();
+            const double radius = 0.5 * glm::length(boxes_[i].extent());
+            // From before all of the scene: whatever stands there throws its shadow into the box.
+            const double before = 0.5 * glm::dot(bounds_.extent(), glm::abs(travel)) +
+                                  std::abs(glm::dot(bounds_.centre() - centre, travel)) + radius;
+            RsmView v = make(light, lookingAlong(centre - before * travel, travel));
+            v.view.halfHeight = float(radius);
+            v.view.depthRange = float(before + 2 * radius);
+            v.texelArea = float(std::pow(2 * radius / side_, 2));
+            v.box = int(i);
+            plan_.views.push_back(v);
+        }
     }
     void addPerspective(uint32_t light, const dvec3& from, const dvec3& forward, double yfov,
                         double ball, double share) {
@@ -77,7 +85,8 @@ private:
         v.light = light;
         return v;
     }
-    dvec3 centre_;
+    Bounds bounds_;
+    std::span<const Bounds> boxes_;
     double radius_;
     int side_;
     RsmPlan& plan_;
@@ -105,9 +114,10 @@ void addLight(Planner& planner, uint32_t index, const gpu::LightData& light, int
 
 } // namespace
 
-RsmPlan planRsm(std::span<const gpu::LightData> lights, const Bounds& bounds, int side,
-                int mostLights, int rectPoints) {
+RsmPlan planRsm(std::span<const gpu::LightData> lights, const Bounds& bounds,
+                std::span<const Bounds> boxes, int side, int mostLights, int rectPoints) {
     RsmPlan plan;
+    plan.power.resize(boxes.size(), dvec3(0));
     if (bounds.empty()) return plan;
     std::vector<uint32_t> order;
     const auto strength = [&](uint32_t i) {
@@ -122,9 +132,9 @@ RsmPlan planRsm(std::span<const gpu::LightData> lights, const Bounds& bounds, in
         plan.lightsLeftOut = uint32_t(order.size()) - uint32_t(mostLights);
         order.resize(size_t(mostLights));
     }
-    Planner planner(bounds, side, plan);
+    Planner planner(bounds, boxes, side, plan);
     for (const uint32_t i : order) {
-        plan.power += powerOf(lights[i], bounds);
+        for (size_t b = 0; b < boxes.size(); ++b) plan.power[b] += powerOf(lights[i], boxes[b]);
         addLight(planner, i, lights[i], rectPoints);
     }
     return plan;

@@ -15,17 +15,21 @@ struct RsmView {
     uint32_t light = 0;
     float share = 1;     // of the light's power that this point of it stands for
     float texelArea = 0; // m², parallel views
+    int box = -1;        // the box that it is for; -1: all
 };
 
 struct RsmPlan {
     std::vector<RsmView> views;
-    dvec3 power{0}; // of all its lights, watts: no more than this leaves them through the views
+    std::vector<dvec3>
+        power; // by box, of all its lights, watts: no more than this leaves them through its views
     uint32_t lightsLeftOut = 0;
 };
 
 /// The views of the `mostLights` lights of the largest power. A light without directions gets six, a narrow spot and light from infinity one;
-/// a rect from `rectPoints` points of it. `bounds` (render space) holds all that is to be lit. `side`: texels.
+/// a rect from `rectPoints` points of it. Light from infinity gets a view for each of `boxes`, parts of `bounds` that are to be lit (render
+/// space). `side`: texels.
 [[nodiscard]] RsmPlan planRsm(std::span<const gpu::LightData> lights, const Bounds& bounds,
-                              int side, int mostLights, int rectPoints);
+                              std::span<const Bounds> boxes, int side, int mostLights,
+                              int rectPoints);
 
 } // namespace tyndall::volumetric_gi

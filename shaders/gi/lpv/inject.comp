@@ -6,6 +6,7 @@
 #include "common/octahedral.glsl"
 #include "common/view.glsl"
 #include "gi/lpv/even_reflectance.glsl"
+#include "gi/lpv/lattice.glsl"
 #include "gi/lpv/sides.glsl"
 #include "lighting/light.glsl"
 #include "shared/gbuffer.h"
@@ -74,7 +75,7 @@ void depositEntering(uint cell, uint cells, vec3 power, vec3 moment, inout Rests
 bool clipToLattice(vec3 origin, vec3 direction, inout float t0, inout float t1) {
     vec3 safe = mix(direction, vec3(1e-20), lessThan(abs(direction), vec3(1e-20)));
     vec3 a = -origin / safe;
-    vec3 b = (vec3(params.size.xyz) - origin) / safe;
+    vec3 b = (vec3(params.grid.size.xyz) - origin) / safe;
     t0 = max(t0, maximumOf(min(a, b)));
     t1 = min(t1, minimumOf(max(a, b)));
     return t0 < t1;
@@ -99,14 +100,14 @@ vec3 depthBefore(Ray ray, float t) {
 void scatterAlong(Ray ray, vec3 power, float end, inout Rests rests, inout vec3 depth) {
     uint cells = cellCount();
     vec3 origin = latticePosition(ray.origin);
-    vec3 direction = ray.direction / params.lowest.w;
+    vec3 direction = ray.direction / params.grid.lowest.w;
     float t = 0.0;
     float last = end;
     if (!clipToLattice(origin, direction, t, last)) return;
     depth = depthBefore(ray, t);
     vec3 safe = mix(direction, vec3(1e-20), lessThan(abs(direction), vec3(1e-20)));
     vec3 towards = step(0.0, safe);
-    ivec3 cell = clamp(ivec3(floor(origin + direction * t)), ivec3(0), params.size.xyz - 1);
+    ivec3 cell = clamp(ivec3(floor(origin + direction * t)), ivec3(0), params.grid.size.xyz - 1);
     for (int i = 0; i < kMostCells && t < last; ++i) {
         vec3 planes = (vec3(cell) + towards - origin) / safe;
         float next = clamp(minimumOf(planes), t, last);
@@ -119,7 +120,7 @@ void scatterAlong(Ray ray, vec3 power, float end, inout Rests rests, inout vec3 
             vec3 scattered = power * window * exp(-depth) * across * oneMinusExpOverX(across) * medium[kLpvTrueAlbedo * cells + index].rgb;
             // A mean cosine of g: a part |g| goes on (or back), the rest to all sides.
             float g = cellDepth.w;
-            uint target = cellIndex(cellOnSide(origin + direction * middle));
+            uint target = cellIndex(cellOnSide(params.grid, origin + direction * middle));
             for (uint c = 0u; c < 3u; ++c) deposit(12u + c, target, cells, scattered[c] * (1.0 - abs(g)), rests.emission[c]);
             if (g != 0.0) depositEntering(target, cells, scattered * abs(g), ray.direction * sign(g), rests);
             depth += across;
@@ -127,7 +128,7 @@ void scatterAlong(Ray ray, vec3 power, float end, inout Rests rests, inout vec3 
         if (planes.x <= next) cell.x += safe.x > 0.0 ? 1 : -1;
         if (planes.y <= next) cell.y += safe.y > 0.0 ? 1 : -1;
         if (planes.z <= next) cell.z += safe.z > 0.0 ? 1 : -1;
-        if (any(lessThan(cell, ivec3(0))) || any(greaterThanEqual(cell, params.size.xyz))) break;
+        if (!isInside(cell)) break;
         t = next;
     }
 }
@@ -152,8 +153,8 @@ void main() {
     vec4 base = texelFetch(rsmBase, texel, 0);
     vec3 normal = octahedralDecodeUnorm(texelFetch(rsmNormal, texel, 0).zw);
     vec3 place = latticePosition(ray.origin + ray.direction * surface) + kOffSurface * normal;
-    if (any(lessThan(place, vec3(0.0))) || any(greaterThanEqual(place, vec3(params.size.xyz)))) return;
-    ivec3 cell = cellOnSide(place);
+    if (any(lessThan(place, vec3(0.0))) || any(greaterThanEqual(place, vec3(params.grid.size.xyz)))) return;
+    ivec3 cell = cellOnSide(params.grid, place);
     vec3 reflected = evenReflectance(base, material.y);
     float window = lights[inject.light].type == kLightDirectional ? 1.0 : rangeWindow(lights[inject.light].position.w, surface);
     depth = depthBefore(ray, surface);

@@ -1,21 +1,23 @@
 // The lattice of light: its arrays, its neighbours, and the lobe that a cell's light leaves with.
 #ifndef TYNDALL_GI_LPV_LATTICE
 #define TYNDALL_GI_LPV_LATTICE
-#include "common/math.glsl"
-#include "shared/lpv.h"
+#include "gi/lpv/grid.glsl"
 
 layout(std140) uniform Params { LpvParams params; };
 
-uint cellCount() { return uint(params.size.x * params.size.y * params.size.z); }
-uint cellIndex(ivec3 at) { return uint(at.x + params.size.x * (at.y + params.size.y * at.z)); }
+uint cellCount() { return cellCount(params.grid); }
+uint cellIndex(ivec3 at) { return cellIndex(params.grid, at); }
+vec3 latticePosition(vec3 position) { return latticePosition(params.grid, position); }
 
-/// A point of render space in cells from the lattice's corner.
-vec3 latticePosition(vec3 position) { return (position - params.lowest.xyz) / params.lowest.w; }
+/// Render space.
+vec3 cellMiddle(ivec3 at) { return params.grid.lowest.xyz + (vec3(at) + 0.5) * params.grid.lowest.w; }
+
+bool isInside(ivec3 at) { return all(lessThan(uvec3(at), uvec3(params.grid.size.xyz))); }
 
 /// The cell `at`, brought back in along axes that repeat; false where there is none.
 bool wrapCell(inout ivec3 at) {
-    ivec3 size = params.size.xyz;
-    bvec3 repeats = bvec3(params.size.w & 1, params.size.w & 2, params.size.w & 4);
+    ivec3 size = params.grid.size.xyz;
+    bvec3 repeats = bvec3(params.grid.size.w & 1, params.grid.size.w & 2, params.grid.size.w & 4);
     bvec3 outside = bvec3(uvec3(greaterThanEqual(uvec3(at), uvec3(size))));
     if (any(outside) && any(bvec3(outside.x && !repeats.x, outside.y && !repeats.y, outside.z && !repeats.z))) return false;
     at = at + size * ivec3(lessThan(at, ivec3(0))) - size * ivec3(greaterThanEqual(at, size));

@@ -52,8 +52,8 @@ void main() {
     vec3 a = corner(3u * triangle);
     vec3 b = corner(3u * triangle + 1u);
     vec3 c = corner(3u * triangle + 2u);
-    ivec3 first = clamp(ivec3(floor(min(a, min(b, c)) - 0.5)) - 1, ivec3(0), params.size.xyz - 1);
-    ivec3 last = clamp(ivec3(floor(max(a, max(b, c)) - 0.5)) + 1, ivec3(0), params.size.xyz - 1);
+    ivec3 first = clamp(ivec3(floor(min(a, min(b, c)) - 0.5)) - 1, ivec3(-1), params.grid.size.xyz);
+    ivec3 last = clamp(ivec3(floor(max(a, max(b, c)) - 0.5)) + 1, ivec3(-1), params.grid.size.xyz);
     ivec3 span = last - first + 1;
     vec3 normal = cross(b - a, c - a);
     float size = length(normal);
@@ -70,19 +70,22 @@ void main() {
         ivec3 at = first + ivec3(i % uint(span.x), i / uint(span.x) % uint(span.y), i / uint(span.x * span.y));
         vec3 middle = vec3(at) + 0.5;
         if (abs(dot(middle - a, normal)) > 1.7321 + kGraze) continue; // no way from here reaches the plane
-        uint self = cellIndex(at);
+        bool hasSelf = isInside(at);
+        uint self = hasSelf ? cellIndex(at) : 0u;
         // Half of the directions: the other half are the same ways from the other end.
         for (uint j = 13u; j < kLpvDirections; ++j) {
             ivec3 offset = params.directions[j].offset.xyz;
             ivec3 to = at + offset;
             float t = crossing(middle, vec3(offset), a, b - a, c - a);
             if (t < 0.0) continue;
-            atomicOr(links[kLpvBlocked * cells + self], 1u << j);
-            addSurface(self, cells, colour);
             int axis = params.directions[j].offset.w != 0 ? -1 : (offset.x != 0 ? 0 : (offset.y != 0 ? 1 : 2));
             uint units = uint(t * 4095.0 + 0.5);
-            if (axis >= 0) atomicMax(links[(kLpvNearest + 2u * uint(axis)) * cells + self], (4096u - max(units, 1u)) << 20u | packedNormal);
-            if (any(lessThan(to, ivec3(0))) || any(greaterThanEqual(to, params.size.xyz))) continue;
+            if (hasSelf) {
+                atomicOr(links[kLpvBlocked * cells + self], 1u << j);
+                addSurface(self, cells, colour);
+                if (axis >= 0) atomicMax(links[(kLpvNearest + 2u * uint(axis)) * cells + self], (4096u - max(units, 1u)) << 20u | packedNormal);
+            }
+            if (!isInside(to)) continue;
             uint other = cellIndex(to);
             atomicOr(links[kLpvBlocked * cells + other], 1u << (25u - j));
             addSurface(other, cells, colour);

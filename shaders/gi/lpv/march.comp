@@ -27,8 +27,7 @@ void main() {
             Segment s = marchSegment(ray, t, end);
             t = s.start + s.size;
             if (s.scatters) {
-                vec3 place = latticePosition(ray.origin + ray.direction * (s.start + 0.5 * s.size));
-                LatticeLight light = latticeLight(place);
+                LatticeLight light = latticeLight(ray.origin + ray.direction * (s.start + 0.5 * s.size), vec3(0.0));
                 vec3 all = fluence(light);
                 vec3 towardsEye = -fluxAlong(light, ray.direction);
                 vec3 scattered = vec3(0.0);

@@ -14,7 +14,7 @@ layout(std430) writeonly buffer LpvMedium { vec4 medium[]; };
 
 void main() {
     ivec3 at = ivec3(gl_GlobalInvocationID);
-    if (any(greaterThanEqual(at, params.size.xyz))) return;
+    if (!isInside(at)) return;
     uint cells = cellCount();
     uint self = cellIndex(at);
     vec3 extinction = vec3(0.0);
@@ -24,7 +24,7 @@ void main() {
     const int kAcross = 3;
     for (int i = 0; i < kAcross * kAcross * kAcross; ++i) {
         vec3 within = (vec3(i % kAcross, i / kAcross % kAcross, i / (kAcross * kAcross)) + 0.5) / float(kAcross);
-        vec3 position = params.lowest.xyz + (vec3(at) + within) * params.lowest.w;
+        vec3 position = params.grid.lowest.xyz + (vec3(at) + within) * params.grid.lowest.w;
         for (uint m = 0u; m < mediumCount(); ++m) {
             float density = mediumDensity(m, position) / float(kAcross * kAcross * kAcross);
             extinction += density * media[m].extinction.rgb;
@@ -34,11 +34,11 @@ void main() {
     }
 #endif
     vec3 transport = max(extinction - forward, vec3(0.0));
-    vec3 depth = transport * params.lowest.w;
+    vec3 depth = transport * params.grid.lowest.w;
     for (uint c = 0u; c < kLpvClasses; ++c) medium[(kLpvPassed + c) * cells + self] = vec4(exp(-depth * sqrt(float(c + 1u))), 0.0);
     medium[kLpvDepth * cells + self] = vec4(depth, 0.0);
     medium[kLpvAlbedo * cells + self] = vec4(clamp((scattering - forward) / max(transport, vec3(1e-30)), 0.0, 1.0), 0.0);
     float cosine = meanOf(forward) / max(meanOf(scattering), 1e-30);
-    medium[kLpvTrueDepth * cells + self] = vec4(extinction * params.lowest.w, cosine);
+    medium[kLpvTrueDepth * cells + self] = vec4(extinction * params.grid.lowest.w, cosine);
     medium[kLpvTrueAlbedo * cells + self] = vec4(clamp(scattering / max(extinction, vec3(1e-30)), 0.0, 1.0), 0.0);
 }

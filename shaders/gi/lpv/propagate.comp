@@ -15,7 +15,7 @@ layout(std430) writeonly buffer LpvSent { float sent[]; };
 
 void main() {
     ivec3 at = ivec3(gl_GlobalInvocationID);
-    if (any(greaterThanEqual(at, params.size.xyz))) return;
+    if (!isInside(at)) return;
     uint cells = cellCount();
     uint self = cellIndex(at);
     Arrival a = gatherLight(at, cells);

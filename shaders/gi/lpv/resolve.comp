@@ -1,10 +1,12 @@
-// The light that there is in each cell, from what is sent: fluence and vector flux, W/m², by the length of its ways through the cell.
+// The light that there is in each cell, from what is sent: fluence and vector flux, W/m², by the length of its ways through the cell. With it
+// goes what tells on which side of surfaces a point lies: look-ups need no more.
 #include "gi/lpv/gather.glsl"
 
 layout(local_size_x = 8, local_size_y = 4, local_size_z = 2) in;
 
 layout(std430) readonly buffer LpvMedium { vec4 medium[]; };
 // xyz: vector flux, w: fluence, of a channel
+layout(std430) writeonly buffer LpvSides { uint sides[]; };
 layout(rgba32f) writeonly uniform image3D redLight;
 layout(rgba32f) writeonly uniform image3D greenLight;
 layout(rgba32f) writeonly uniform image3D blueLight;
@@ -36,16 +38,18 @@ vec4 channelLight(vec4 arrival, float depth, float albedo, float emission) {
 
 void main() {
     ivec3 at = ivec3(gl_GlobalInvocationID);
-    if (any(greaterThanEqual(at, params.size.xyz))) return;
+    if (!isInside(at)) return;
     uint cells = cellCount();
     uint self = cellIndex(at);
+    for (uint p = 0u; p < kLpvSidePlanes; ++p) sides[uint(params.grid.place.y) + p * cells + self] = links[p * cells + self];
     Arrival a = gatherLight(at, cells);
     vec3 depth = medium[kLpvDepth * cells + self].rgb;
     vec3 albedo = medium[kLpvAlbedo * cells + self].rgb;
     vec3 emission = sources[kLpvEmission * cells + self].rgb;
     // Power times length in cells, over the cell's volume.
-    float unit = 1.0 / (params.lowest.w * params.lowest.w);
-    imageStore(redLight, at, unit * channelLight(a.red, depth.r, albedo.r, emission.r));
-    imageStore(greenLight, at, unit * channelLight(a.green, depth.g, albedo.g, emission.g));
-    imageStore(blueLight, at, unit * channelLight(a.blue, depth.b, albedo.b, emission.b));
+    float unit = 1.0 / (params.grid.lowest.w * params.grid.lowest.w);
+    ivec3 to = at + ivec3(0, 0, params.grid.place.x);
+    imageStore(redLight, to, unit * channelLight(a.red, depth.r, albedo.r, emission.r));
+    imageStore(greenLight, to, unit * channelLight(a.green, depth.g, albedo.g, emission.g));
+    imageStore(blueLight, to, unit * channelLight(a.blue, depth.b, albedo.b, emission.b));
 }

@@ -2,7 +2,7 @@
 #ifndef TYNDALL_GI_LPV_SIDES
 #define TYNDALL_GI_LPV_SIDES
 #include "common/octahedral.glsl"
-#include "gi/lpv/lattice.glsl"
+#include "gi/lpv/grid.glsl"
 
 layout(std430) readonly buffer LpvLinks { uint links[]; };
 
@@ -10,9 +10,9 @@ const float kOffSurface = 0.5; // cells that a point on a surface is moved off i
 
 /// The farthest that `place` (cells from the lattice's corner) is behind a surface that crosses an axis through the middle of `cell` before
 /// the next one's; at most 0 where it is behind none. `through`: the surface's normal, away from the middle.
-float depthBehind(ivec3 cell, vec3 place, out vec3 through) {
-    uint cells = cellCount();
-    uint self = cellIndex(cell);
+float depthBehind(LpvGrid grid, ivec3 cell, vec3 place, out vec3 through) {
+    uint cells = cellCount(grid);
+    uint self = uint(grid.place.y) + cellIndex(grid, cell);
     float farthest = 0.0;
     through = vec3(0.0);
     if (links[kLpvBlocked * cells + self] == 0u) return farthest;
@@ -36,11 +36,11 @@ float depthBehind(ivec3 cell, vec3 place, out vec3 through) {
 /// The cell whose middle is on the same side as `place` of the surfaces around it: the cell that holds it, or, where one of these stands
 /// between that one's middle and the point, one behind that surface: the next along the axis that the surface faces most, along the
 /// second, or along both. If the point is hidden from all of them, it lies around a corner from the one that holds it.
-ivec3 cellOnSide(vec3 place) {
-    ivec3 last = params.size.xyz - 1;
+ivec3 cellOnSide(LpvGrid grid, vec3 place) {
+    ivec3 last = grid.size.xyz - 1;
     ivec3 cell = clamp(ivec3(floor(place)), ivec3(0), last);
     vec3 through, ignored;
-    if (depthBehind(cell, place, through) <= 0.0) return cell;
+    if (depthBehind(grid, cell, place, through) <= 0.0) return cell;
     vec3 size = abs(through);
     ivec3 first = size.x >= size.y && size.x >= size.z ? ivec3(1, 0, 0) : (size.y >= size.z ? ivec3(0, 1, 0) : ivec3(0, 0, 1));
     size *= vec3(1 - first);
@@ -49,7 +49,7 @@ ivec3 cellOnSide(vec3 place) {
     int tries = maximumOf(size) > 0.2 ? 3 : 1; // a surface that faces one axis has nothing to do with another
     for (int i = 0; i < tries; ++i) {
         ivec3 next = clamp(cell + (i == 0 ? first : (i == 1 ? second : first + second)) * sides, ivec3(0), last);
-        if (depthBehind(next, place, ignored) <= 0.0) return next;
+        if (depthBehind(grid, next, place, ignored) <= 0.0) return next;
     }
     return cell;
 }

@@ -27,8 +27,8 @@ void main() {
         // Off the surface: cells behind it have no part in its light. A little towards the eye: a point on an edge is on no side of the
         // other surface there, but the eye is.
         vec2 pixel = vec2(texel) + 0.5;
-        vec3 place = latticePosition(renderPosition(pixel, depth)) + kOffSurface * octahedralDecodeUnorm(normals.zw) - 0.01 * cameraRay(pixel).direction;
-        LatticeLight light = latticeLight(place);
+        vec3 offSurface = kOffSurface * octahedralDecodeUnorm(normals.zw) - 0.01 * cameraRay(pixel).direction;
+        LatticeLight light = latticeLight(renderPosition(pixel, depth), offSurface);
         // Of radiance (Φ + 3 F·ω)/4π, what arrives on a plane: Φ/4 - F·n/2.
         vec3 irradiance = max(0.25 * fluence(light) - 0.5 * fluxAlong(light, normal), vec3(0.0));
         radiance = evenReflectance(base, material.y) * irradiance / kPi;

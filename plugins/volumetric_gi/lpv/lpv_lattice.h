@@ -1,0 +1,33 @@
+#pragma once
+// One lattice: what it is made of, and the steps that light takes in it.
+
+#include "plugin/plugin_api.h"
+#include "volumetric_gi/lpv/lattice_placement.h"
+
+namespace tyndall::volumetric_gi {
+
+struct Lattice {
+    LatticeLevel level;
+    fg::BufferHandle medium, links, sources, flux; // LpvMedium and so on, shared/lpv.h
+};
+
+/// What the media are in each cell. Kept while they and the lattice stay.
+[[nodiscard]] fg::BufferHandle addLatticeMedium(fg::FrameGraph& graph,
+                                                const plugin::FrameInputs& inputs,
+                                                const LatticeLevel& level);
+
+/// Which ways between cells surfaces cross. Kept while they and the lattice stay.
+[[nodiscard]] fg::BufferHandle addLatticeLinks(fg::FrameGraph& graph,
+                                               const plugin::FrameInputs& inputs,
+                                               const LatticeLevel& level);
+
+/// Adds the light that comes in from the coarser lattice around it to the sources; returns their next version.
+[[nodiscard]] fg::BufferHandle addInflow(fg::FrameGraph& graph, const Lattice& lattice,
+                                         const Lattice& outer);
+
+/// So many steps of the lattice number `index`. They go on from where the last frame left the light, or (`goOn` false) begin with that of the
+/// coarser lattice around it, or with darkness. Returns the flux.
+[[nodiscard]] fg::BufferHandle addSteps(fg::FrameGraph& graph, const Lattice& lattice,
+                                        const Lattice* outer, int index, int steps, bool goOn);
+
+} // namespace tyndall::volumetric_gi
