@@ -14,7 +14,8 @@ bool allows(Access declared, Touch touch) {
         return declared == Access::StorageRead || declared == Access::StorageWrite;
     case Touch::WriteStorage: return declared == Access::StorageWrite;
     case Touch::UniformBlock: return declared == Access::Uniform;
-    case Touch::Indirect: return declared == Access::Indirect;
+    // A pass may write its own arguments.
+    case Touch::Indirect: return declared == Access::Indirect || declared == Access::StorageWrite;
     case Touch::ColorAttachment: return declared == Access::ColorTarget;
     case Touch::DepthAttachment: return declared == Access::DepthTarget;
     case Touch::DepthTest: return declared == Access::DepthTarget || declared == Access::DepthRead;

@@ -100,7 +100,14 @@ struct FrameInputs {
     const gpu::LightData*
         lightData; // `lights.lightCount` of them, as on the GPU; until the frame is recorded
     SurfaceDrawer* surfaces;
-    TermSet terms; // that the plan gives to this plugin
+    TermSet terms;   // that the plan gives to this plugin
+    bool statistics; // somebody asks for FrameOutputs::statistics
+};
+
+/// A number about a frame: "iterations.gi.lpv", "residual.gi.lpv", "energy.gi.lpv.injected". The part before the first dot names its kind.
+struct Statistic {
+    const char* name;
+    uint32_t element; // of FrameOutputs::statistics
 };
 
 /// Null handles: not produced. All view-sized.
@@ -109,6 +116,9 @@ struct FrameOutputs {
         inScatter; // RGBA32F nits reaching the eye from media, for the granted terms in media
     fg::TextureHandle
         surfaceRadiance; // RGBA32F nits leaving surfaces towards the eye (before media), for the granted terms on surfaces
+    fg::BufferHandle statistics;          // floats; only where inputs.statistics is set
+    const Statistic* statistic = nullptr; // what they are, until the next addPasses()
+    uint32_t statisticCount = 0;
 };
 
 class Plugin {

@@ -91,6 +91,7 @@ Outcome Capture::renderFrame(int index) {
     request.frameIndex = uint32_t(index);
     request.converge = options_.converge;
     request.separateTerms = options_.hasAov("terms");
+    request.statistics = !options_.report.empty();
     if (!options_.converge)
         request.time += index * options_.timeStep; // a scene that converges stands still
     CaptureReport::Frame& frame = report_.frames.emplace_back();
@@ -187,6 +188,7 @@ void Capture::describe() {
     report_.setPlan(result_.plan);
     session_->renderer().waitForTimings();
     report_.setPasses(session_->renderer().report());
+    report_.setStatistics(session_->renderer().readStatistics());
     if (options_.converge) {
         report_.iterations["converge"] = result_.accumulatedFrames;
         report_.residuals["converge"] = result_.estimatedError;

@@ -57,6 +57,19 @@ void CaptureReport::setPasses(const fg::FrameReport& report) {
     gpuBytes = report.gpuBytes;
 }
 
+void CaptureReport::setStatistics(const std::map<std::string, double>& values) {
+    for (const auto& [full, value] : values) {
+        const size_t dot = full.find('.');
+        const std::string kind = full.substr(0, dot), name = full.substr(dot + 1);
+        if (kind == "iterations")
+            iterations[name] = uint64_t(std::llround(value));
+        else if (kind == "residual")
+            residuals[name] = value;
+        else
+            statistics[kind][name] = value;
+    }
+}
+
 double CaptureReport::quantileMs(double quantile) const {
     std::vector<double> sorted;
     for (size_t i = frames.size() > 1 ? 1 : 0; i < frames.size(); ++i)
@@ -117,7 +130,13 @@ std::string CaptureReport::toJson() const {
     for (const auto& [name, count] : iterations) json.member(name, count);
     json.endObject().key("residual").compact().beginObject();
     for (const auto& [name, value] : residuals) json.member(name, value);
-    return json.endObject().endObject().take();
+    json.endObject();
+    for (const auto& [kind, values] : statistics) {
+        json.key(kind).compact().beginObject();
+        for (const auto& [name, value] : values) json.member(name, value);
+        json.endObject();
+    }
+    return json.endObject().take();
 }
 
 void CaptureReport::addPassesTo(Trace& trace) const {

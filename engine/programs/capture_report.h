@@ -37,9 +37,12 @@ struct CaptureReport {
     int64_t glObjectsLeaked = 0;
     std::map<std::string, uint64_t> iterations;
     std::map<std::string, double> residuals;
+    std::map<std::string, std::map<std::string, double>> statistics; // others, by kind
 
     void setPlan(const FramePlan& plan);
     void setPasses(const fg::FrameReport& report);
+    /// By name, of which the part before the first dot is the kind (plugin::Statistic).
+    void setStatistics(const std::map<std::string, double>& values);
     /// Milliseconds of the frames; the first, which compiles shaders and fills buffers, only counts where it is alone.
     [[nodiscard]] double medianMs() const;
     [[nodiscard]] double percentile95Ms() const;

@@ -54,8 +54,9 @@ TermImages addDirectTerms(fg::FrameGraph& graph, const SurfaceLight& surfaces,
 
 /// Each technique computes the terms that the plan gives it.
 void addTechniques(fg::FrameGraph& graph, const FrameParts& parts, const FrameOrder& order,
-                   plugin::FrameInputs& inputs, fg::TextureHandle transmittance,
-                   TermImages& images) {
+                   plugin::FrameInputs& inputs, FrameImages& frame) {
+    const fg::TextureHandle transmittance = frame.transmittance;
+    TermImages& images = frame.terms;
     const auto techniques = parts.plugins.techniques();
     for (size_t i = 0; i < techniques.size(); ++i) {
         inputs.terms = order.plan->termsOf(int(i));
@@ -68,6 +69,12 @@ void addTechniques(fg::FrameGraph& graph, const FrameParts& parts, const FrameOr
                                         outputs.surfaceRadiance, transmittance));
         if (holds(graph, outputs.inScatter))
             images.add(inputs.terms & ~kIndirectOnSurfaces, outputs.inScatter);
+        if (!outputs.statistics) continue;
+        StatisticsBuffer statistics{outputs.statistics, {}};
+        for (uint32_t k = 0; k < outputs.statisticCount; ++k)
+            statistics.elements.emplace_back(outputs.statistic[k].name,
+                                             outputs.statistic[k].element);
+        frame.statistics.push_back(std::move(statistics));
     }
 }
 
@@ -118,8 +125,9 @@ FrameImages recordFrame(fg::FrameGraph& graph, const FrameParts& parts, const Fr
                                order.sceneChange,
                                parts.lights.lights().data(),
                                &parts.drawer,
-                               0};
-    addTechniques(graph, parts, order, inputs, march.transmittance, images.terms);
+                               0,
+                               order.statistics};
+    addTechniques(graph, parts, order, inputs, images);
 
     // Transparent surfaces, then the sum of all terms.
     images.terms = addBlendPass(graph, parts.blended,

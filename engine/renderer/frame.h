@@ -38,7 +38,14 @@ struct FrameOrder {
     uint32_t averagedFrame =
         0; // 0: this frame stands alone; else its number in the average, from 1
     bool separateTerms = false;            // an image a term is wanted
+    bool statistics = false;               // numbers about techniques are wanted
     std::span<const Bounds> surfaceBounds; // of everything drawn, render space
+};
+
+/// Numbers of one technique: floats, and their names.
+struct StatisticsBuffer {
+    fg::BufferHandle values;
+    std::vector<std::pair<std::string, uint32_t>> elements;
 };
 
 /// Handles of what can be read back.
@@ -50,6 +57,7 @@ struct FrameImages {
         beauty; // their sum; averaged where the frame is, alpha then holds squared deviations
     fg::TextureHandle display; // RGBA8
     fg::BufferHandle invalidPixels;
+    std::vector<StatisticsBuffer> statistics;
 };
 
 /// Records the passes of one frame. Everything in `parts` was updated for it.

@@ -160,6 +160,7 @@ Result<FrameResult> Renderer::renderFrame(const FrameRequest& request) {
     r.order.plan = &*plan;
     r.order.ev100 = r.scene->ev100;
     r.order.separateTerms = request.separateTerms;
+    r.order.statistics = request.statistics;
     r.order.averagedFrame =
         request.converge ? r.average.next(r.averageKey(request), request.restart) : 0;
     const SceneVersions& v = r.scene->versions;
@@ -209,6 +210,8 @@ Result<FrameResult> Renderer::renderFrame(const FrameRequest& request) {
     if (request.separateTerms)
         for (uint32_t i = 0; i < r.images.terms.count; ++i)
             graph.markOutput(r.images.terms.images[i].image);
+    for (const StatisticsBuffer& statistics : r.images.statistics)
+        graph.markOutput(statistics.values);
     if (Result<void> done = r.executor.execute(); !done) return done.error();
 
     FrameResult result;

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <optional>
 #include <span>
@@ -51,6 +52,7 @@ struct FrameRequest {
         false;            // average this frame with those since the last change of request or scene
     bool restart = false; // forget the average
     bool separateTerms = false; // keep an image a term for readTerms(), averaged too
+    bool statistics = false;    // keep numbers about techniques for readStatistics()
     std::string
         inspect; // name of a resource to show instead of the picture ("shadow.atlas"), see InspectSettings
 };
@@ -92,6 +94,8 @@ public:
     // Read-backs of the last frame; each waits for the GPU. Linear and unexposed, top row first.
     [[nodiscard]] Image readBeauty();
     [[nodiscard]] std::vector<TermImage> readTerms();
+    /// Numbers about the frame's techniques by name (plugin::Statistic); none unless the request asked for them.
+    [[nodiscard]] std::map<std::string, double> readStatistics();
     /// `depth` (metres along the ray, Y), `normal` (world, RGB), `albedo` (RGB), `transmittance` (RGB).
     Result<Image> readAov(std::string_view name);
     /// Exposed, tone-mapped, dithered RGB bytes, top row first.

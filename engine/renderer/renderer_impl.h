@@ -52,7 +52,7 @@ struct Renderer::Impl {
 
     const Scene* scene = nullptr;
     Bounds sceneBounds, contentBounds; // world
-    SceneVersions seenBounds; // of what sceneBounds was made from
+    SceneVersions seenBounds;          // of what sceneBounds was made from
     dvec3 renderOrigin{0};
     std::vector<Bounds> surfaceBounds;
     Accumulation average;

@@ -1,6 +1,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "core/check.h"
 #include "renderer/renderer_impl.h"
 
 namespace tyndall {
@@ -68,6 +69,20 @@ std::vector<TermImage> Renderer::readTerms() {
             if (c == ',') c = '+';
         result.push_back(
             {handle.terms, name, withoutAlpha(impl_->executor.readImage(handle.image))});
+    }
+    return result;
+}
+
+std::map<std::string, double> Renderer::readStatistics() {
+    std::map<std::string, double> result;
+    for (const StatisticsBuffer& statistics : impl_->images.statistics) {
+        const std::vector<std::byte> bytes = impl_->executor.readBuffer(statistics.values);
+        for (const auto& [name, element] : statistics.elements) {
+            float value = 0;
+            CHECK((element + 1) * sizeof value <= bytes.size());
+            std::memcpy(&value, &bytes[element * sizeof value], sizeof value);
+            result[name] = double(value);
+        }
     }
     return result;
 }

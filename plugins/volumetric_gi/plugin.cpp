@@ -49,7 +49,9 @@ public:
     plugin::FrameOutputs addPasses(fg::FrameGraph& graph, uint32_t technique,
                                    const plugin::FrameInputs& inputs) override {
         if (technique == kLpv) return lpv_.addPasses(graph, inputs, *host_);
-        return {.inScatter = addOctavesPass(graph, inputs, octaves_), .surfaceRadiance = {}};
+        plugin::FrameOutputs outputs;
+        outputs.inScatter = addOctavesPass(graph, inputs, octaves_);
+        return outputs;
     }
     fg::TextureHandle addPostPasses(fg::FrameGraph&, const plugin::FrameInputs&,
                                     fg::TextureHandle color) override {

@@ -63,6 +63,34 @@ struct LpvParams {
     LpvDirection directions[26];
 };
 
+/// How far a lattice's light has come, and where its power goes: LpvControl holds one of each lattice. Powers are watts a step, of the three channels
+/// together.
+struct LpvControl {
+    uint groups[3]; // of the next step; none where the light is settled
+    float steps;    // since it began
+    float residual; // of the last step: change of all powers over all powers
+    float error;    // estimate of what is left to come, over all powers; -1: not known
+    float stored;   // power on its way
+    uint settled;
+    // The last step's ledger: what was stored before and injected is absorbed, escapes, is blocked, or is stored after.
+    float injected;
+    float absorbed;  // by media
+    float escaped;   // out of the lattice
+    float blocked;   // by surfaces
+    float change;    // of what is stored
+    float imbalance; // of all that over what is stored
+    uint padding0;
+    uint padding1;
+};
+
+/// Of one look at a lattice's residual.
+struct LpvMeasureParams {
+    uint lattice;    // whose LpvControl it is
+    uint groups;     // that have left partial sums
+    float steps;     // since the last look
+    float tolerance; // error below which light is settled
+};
+
 /// Of one object's triangles.
 struct LpvTriangles {
     uint strideFloats;

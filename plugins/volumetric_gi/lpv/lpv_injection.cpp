@@ -34,7 +34,14 @@ void recordInject(const InjectData& data, fg::PassContext& context) {
 
 } // namespace
 
-fg::BufferHandle addEmptyDeposits(fg::FrameGraph& graph, uint64_t cells) {
+fg::PersistentBuffer keptDeposits(fg::FrameGraph& graph, int index, uint64_t cells) {
+    static constexpr const char* kNames[gpu::kLpvMostLevels] = {
+        "gi.lpv.deposits", "gi.lpv.deposits1", "gi.lpv.deposits2", "gi.lpv.deposits3"};
+    return graph.persistentBuffer(kNames[index],
+                                  fg::BufferDesc{cells * gpu::kLpvDepositPlanes * sizeof(int32_t)});
+}
+
+fg::BufferHandle addClear(fg::FrameGraph& graph, fg::BufferHandle deposits) {
     struct Data {
         fg::BufferHandle deposits;
     };
@@ -42,10 +49,7 @@ fg::BufferHandle addEmptyDeposits(fg::FrameGraph& graph, uint64_t cells) {
         .addPass<Data>(
             "gi.lpv.clear",
             [&](fg::Builder& builder, Data& data) {
-                data.deposits =
-                    builder.create("gi.lpv.deposits",
-                                   fg::BufferDesc{cells * gpu::kLpvDepositPlanes * sizeof(int32_t)},
-                                   fg::Access::TransferWrite);
+                data.deposits = builder.write(deposits, fg::Access::TransferWrite);
             },
             [](const Data& data, fg::PassContext& context) {
                 context.clearBuffer(data.deposits, 0);

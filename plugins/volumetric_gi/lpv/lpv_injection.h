@@ -23,8 +23,10 @@ struct Rsm {
 [[nodiscard]] Rsm addRsm(fg::FrameGraph& graph, const plugin::FrameInputs& inputs,
                          const RsmView& from);
 
-/// LpvDeposits, all 0.
-[[nodiscard]] fg::BufferHandle addEmptyDeposits(fg::FrameGraph& graph, uint64_t cells);
+/// LpvDeposits of the lattice number `index`, from frame to frame.
+[[nodiscard]] fg::PersistentBuffer keptDeposits(fg::FrameGraph& graph, int index, uint64_t cells);
+/// Sets them to 0; returns their next version.
+[[nodiscard]] fg::BufferHandle addClear(fg::FrameGraph& graph, fg::BufferHandle deposits);
 
 /// Adds a map's light to the deposits; returns their next version.
 [[nodiscard]] fg::BufferHandle addInjection(fg::FrameGraph& graph,

@@ -133,62 +133,123 @@ fg::BufferHandle addInflow(fg::FrameGraph& graph, const Lattice& lattice, const 
         .sources;
 }
 
+namespace {
+
+constexpr int kStepsBetweenLooks = 8; // at the residual; even: light ends in the first buffer
+
+struct StepsData {
+    fg::BufferHandle medium, sources, links, flux[2], control, partials;
+    OuterBuffers outer;
+    gpu::LpvParams params;
+    gpu::LpvMeasureParams measure;
+    StepsRequest request;
+    ivec3 groups;
+    bool restart, hasOuter;
+    [[nodiscard]] uint64_t argumentsAt() const {
+        return uint64_t(request.lattice) * sizeof(gpu::LpvControl);
+    }
+};
+
+void recordFirstGuess(const StepsData& data, fg::PassContext& context) {
+    gpu::LpvControl control{};
+    for (int axis = 0; axis < 3; ++axis) control.groups[axis] = uint32_t(data.groups[axis]);
+    context.upload(data.control, data.argumentsAt(), &control, sizeof control);
+    if (data.hasOuter) {
+        auto command = context.compute("gi/lpv/refine.comp");
+        bindOuter(command, data.outer).params(data.params).bind("LpvFlux", data.flux[0]);
+        dispatchOverCells(command, data.params.grid);
+    } else {
+        context.clearBuffer(data.flux[0], 0);
+    }
+    context.barrier(fg::Access::StorageRead);
+    context.barrier(fg::Access::Indirect);
+}
+
+void recordStep(const StepsData& data, int step, fg::PassContext& context) {
+    context.compute("gi/lpv/propagate.comp")
+        .params(data.params)
+        .bind("LpvMedium", data.medium)
+        .bind("LpvSources", data.sources)
+        .bind("LpvLinks", data.links)
+        .bind("LpvFlux", data.flux[step % 2])
+        .bind("LpvSent", data.flux[1 - step % 2])
+        .dispatchIndirect(data.control, data.argumentsAt());
+    context.barrier(fg::Access::StorageRead);
+}
+
+/// After an even number of steps: the last one's result is in the first buffer.
+void recordLook(const StepsData& data, bool ledger, fg::PassContext& context) {
+    auto command = context.compute("gi/lpv/measure.comp", {{"LEDGER", ledger}});
+    command.params(data.params)
+        .bind("LpvMedium", data.medium)
+        .bind("LpvSources", data.sources)
+        .bind("LpvLinks", data.links)
+        .bind("LpvFlux", data.flux[1])
+        .bind("LpvSent", data.flux[0])
+        .bind("LpvPartials", data.partials);
+    if (ledger)
+        command.dispatch(uint32_t(data.groups.x), uint32_t(data.groups.y), uint32_t(data.groups.z));
+    else
+        command.dispatchIndirect(data.control, data.argumentsAt());
+    context.barrier(fg::Access::StorageRead);
+    context.compute("gi/lpv/conclude.comp", {{"LEDGER", ledger}})
+        .params(data.measure, "Measure")
+        .bind("LpvPartials", data.partials)
+        .bind("LpvControls", data.control)
+        .dispatch(1);
+    context.barrier(fg::Access::StorageRead);
+    context.barrier(fg::Access::Indirect);
+}
+
+void recordSteps(const StepsData& data, fg::PassContext& context) {
+    if (data.restart) recordFirstGuess(data, context);
+    for (int step = 0; step < data.request.most; ++step) {
+        recordStep(data, step, context);
+        if ((step + 1) % kStepsBetweenLooks == 0) recordLook(data, false, context);
+    }
+    if (data.request.ledger) recordLook(data, true, context);
+}
+
+} // namespace
+
 fg::BufferHandle addSteps(fg::FrameGraph& graph, const Lattice& lattice, const Lattice* outer,
-                          int index, int steps, bool goOn) {
+                          const StepsRequest& request, fg::BufferHandle& control) {
     static constexpr const char* kNames[gpu::kLpvMostLevels][2] = {
         {"gi.lpv.flux", "gi.lpv.flux.other"},
         {"gi.lpv.flux1", "gi.lpv.flux1.other"},
         {"gi.lpv.flux2", "gi.lpv.flux2.other"},
         {"gi.lpv.flux3", "gi.lpv.flux3.other"}};
+    const auto& names = kNames[request.lattice];
     const fg::BufferDesc desc{lattice.level.cells * gpu::kLpvFluxPlanes * sizeof(float)};
-    const fg::PersistentBuffer here = graph.persistentBuffer(kNames[index][0], desc),
-                               there = graph.persistentBuffer(kNames[index][1], desc);
-    struct Data {
-        fg::BufferHandle medium, sources, links, flux[2];
-        OuterBuffers outer;
-        gpu::LpvParams params;
-        int steps;
-        bool restart, hasOuter;
-    };
-    return graph
-        .addPass<Data>(
-            "gi.lpv.propagate",
-            [&](fg::Builder& builder, Data& data) {
-                data.medium = builder.read(lattice.medium);
-                data.sources = builder.read(lattice.sources);
-                data.links = builder.read(lattice.links);
-                data.flux[0] = builder.write(here.handle);
-                data.flux[1] = builder.write(there.handle);
-                data.hasOuter = outer != nullptr;
-                if (outer) data.outer = readOuter(builder, *outer);
-                data.params = lattice.level.params;
-                data.steps = (steps + 1) / 2 * 2; // ends in the first buffer
-                data.restart = here.wasReset || there.wasReset || !goOn;
-            },
-            [](const Data& data, fg::PassContext& context) {
-                if (data.restart && data.hasOuter) {
-                    auto command = context.compute("gi/lpv/refine.comp");
-                    bindOuter(command, data.outer)
-                        .params(data.params)
-                        .bind("LpvFlux", data.flux[0]);
-                    dispatchOverCells(command, data.params.grid);
-                } else if (data.restart) {
-                    context.clearBuffer(data.flux[0], 0);
-                }
-                context.barrier(fg::Access::StorageRead);
-                for (int step = 0; step < data.steps; ++step) {
-                    auto command = context.compute("gi/lpv/propagate.comp");
-                    command.params(data.params)
-                        .bind("LpvMedium", data.medium)
-                        .bind("LpvSources", data.sources)
-                        .bind("LpvLinks", data.links)
-                        .bind("LpvFlux", data.flux[step % 2])
-                        .bind("LpvSent", data.flux[1 - step % 2]);
-                    dispatchOverCells(command, data.params.grid);
-                    context.barrier(fg::Access::StorageRead);
-                }
-            })
-        .flux[0];
+    const fg::PersistentBuffer here = graph.persistentBuffer(names[0], desc),
+                               there = graph.persistentBuffer(names[1], desc);
+    const StepsData& pass = graph.addPass<StepsData>(
+        "gi.lpv.propagate",
+        [&](fg::Builder& builder, StepsData& data) {
+            data.medium = builder.read(lattice.medium);
+            data.sources = builder.read(lattice.sources);
+            data.links = builder.read(lattice.links);
+            data.flux[0] = builder.write(here.handle);
+            data.flux[1] = builder.write(there.handle);
+            data.control = builder.write(control);
+            data.params = lattice.level.params;
+            const ivec3 size(data.params.grid.size);
+            data.groups = (size + ivec3(7, 3, 1)) / ivec3(8, 4, 2); // local sizes of the shaders
+            data.measure = {uint32_t(request.lattice),
+                            uint32_t(data.groups.x * data.groups.y * data.groups.z),
+                            float(kStepsBetweenLooks), request.tolerance};
+            data.partials = builder.create("gi.lpv.partials",
+                                           fg::BufferDesc{data.measure.groups * 7 * sizeof(float)});
+            data.request = request;
+            data.request.most =
+                (request.most + kStepsBetweenLooks - 1) / kStepsBetweenLooks * kStepsBetweenLooks;
+            data.hasOuter = outer != nullptr;
+            if (outer) data.outer = readOuter(builder, *outer);
+            data.restart = here.wasReset || there.wasReset || !request.goOn;
+        },
+        [](const StepsData& data, fg::PassContext& context) { recordSteps(data, context); });
+    control = pass.control;
+    return pass.flux[0];
 }
 
 } // namespace tyndall::volumetric_gi

@@ -25,9 +25,17 @@ struct Lattice {
 [[nodiscard]] fg::BufferHandle addInflow(fg::FrameGraph& graph, const Lattice& lattice,
                                          const Lattice& outer);
 
-/// So many steps of the lattice number `index`. They go on from where the last frame left the light, or (`goOn` false) begin with that of the
-/// coarser lattice around it, or with darkness. Returns the flux.
+struct StepsRequest {
+    int lattice;     // number among the lattices, the coarsest is 0
+    int most;        // steps; fewer where light is settled before
+    float tolerance; // it is when what is left to come, over what there is, is estimated to be less
+    bool
+        goOn; // from where the last frame left the light; else from that of the coarser lattice around it, or from darkness
+    bool ledger; // fill in where the power goes
+};
+/// Propagates light. `control`: LpvControl of each lattice, its next version on return. Returns the flux.
 [[nodiscard]] fg::BufferHandle addSteps(fg::FrameGraph& graph, const Lattice& lattice,
-                                        const Lattice* outer, int index, int steps, bool goOn);
+                                        const Lattice* outer, const StepsRequest& request,
+                                        fg::BufferHandle& control);
 
 } // namespace tyndall::volumetric_gi

@@ -15,6 +15,9 @@ const SettingDesc kLpvSettings[] = {
         "Longest side of the finest lattice; shorter than the scene it follows the camera. 0: from the scene."),
     TYNDALL_INT(LpvSettings, steps, "gi.lpv.steps", "Steps a frame", "", 2, 4096, 96,
                 "Steps that light is propagated in each frame, on from the frame before."),
+    TYNDALL_FLOAT(
+        LpvSettings, tolerance, "gi.lpv.tolerance", "Settled below", "", 0.0f, 1.0f, 0.002f,
+        "Steps end when what is left to come, over what there is, is estimated to be less."),
     TYNDALL_INT(LpvSettings, rsmSize, "gi.lpv.rsmSize", "Map size", "texels", 16, 2048, 128,
                 "Side of a reflective shadow map: of each light, of each of its six directions."),
     TYNDALL_INT(

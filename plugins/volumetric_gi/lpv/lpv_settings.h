@@ -12,6 +12,7 @@ struct LpvSettings {
     int32_t resolution;
     int32_t cascades;
     float extent;
+    float tolerance;
     int32_t steps;
     int32_t rsmSize;
     int32_t rsmLights;

@@ -1,6 +1,9 @@
 #include "volumetric_gi/lpv/lpv_technique.h"
 
+#include <bit>
+#include <cstddef>
 #include <string>
+#include <utility>
 
 #include "framegraph/hash.h"
 #include "volumetric_gi/lpv/lpv_injection.h"
@@ -51,7 +54,8 @@ uint64_t LpvTechnique::sourceKey(const plugin::FrameInputs& inputs, uint64_t pla
     for (const uint64_t version :
          {inputs.scene.materials, inputs.scene.media, uint64_t(settings_.rsmSize),
           uint64_t(settings_.rsmLights), uint64_t(settings_.rsmRectPoints),
-          uint64_t(settings_.reflected), uint64_t(settings_.scattered)})
+          uint64_t(settings_.reflected), uint64_t(settings_.scattered),
+          uint64_t(std::bit_cast<uint32_t>(settings_.tolerance))})
         key = fg::mixHash(key, version);
     const char* bytes = reinterpret_cast<const char*>(inputs.lightData);
     return fg::hashName({bytes, inputs.lights.lightCount * sizeof(gpu::LightData)}, key);
@@ -74,21 +78,60 @@ void LpvTechnique::addSources(fg::FrameGraph& graph, const plugin::FrameInputs& 
     saidLeftOut_ = plan.lightsLeftOut;
 
     std::vector<Injection> injections;
+    std::vector<bool> stale;
     for (size_t i = 0; i < lattices.size(); ++i) {
         const Lattice& lattice = lattices[i];
-        injections.push_back({lattice.medium, lattice.links,
-                              addEmptyDeposits(graph, lattice.level.cells), lattice.level.params,
+        const fg::PersistentBuffer kept = keptDeposits(graph, int(i), lattice.level.cells);
+        const uint64_t key = sourceKey(inputs, lattice.level.key);
+        stale.push_back(kept.wasReset || depositKeys_[i] != key);
+        depositKeys_[i] = key;
+        injections.push_back({lattice.medium, lattice.links, kept.handle, lattice.level.params,
                               injectParams(plan.power[i])});
         injections.back().params.grid.place = {0, 0, 0, 0};
+        if (stale[i]) injections[i].deposits = addClear(graph, kept.handle);
     }
     for (const RsmView& rsm : plan.views) {
+        const auto wants = [&](size_t i) { return stale[i] && (rsm.box < 0 || rsm.box == int(i)); };
+        bool wanted = false;
+        for (size_t i = 0; i < lattices.size(); ++i) wanted = wanted || wants(i);
+        if (!wanted) continue;
         const Rsm map = addRsm(graph, inputs, rsm);
         for (size_t i = 0; i < lattices.size(); ++i)
-            if (rsm.box < 0 || rsm.box == int(i))
+            if (wants(i))
                 injections[i].deposits = addInjection(graph, inputs, settings_, map, injections[i]);
     }
     for (size_t i = 0; i < lattices.size(); ++i)
         lattices[i].sources = addCollection(graph, injections[i], lattices[i].level.cells);
+}
+
+/// The finest lattice is "gi.lpv", those around it "gi.lpv.outer1" and so on.
+void LpvTechnique::nameStatistics(size_t lattices) {
+    static constexpr std::pair<const char*, size_t> kValues[] = {
+        {"energy.{}.stored", offsetof(gpu::LpvControl, stored)},
+        {"energy.{}.injected", offsetof(gpu::LpvControl, injected)},
+        {"energy.{}.absorbed", offsetof(gpu::LpvControl, absorbed)},
+        {"energy.{}.escaped", offsetof(gpu::LpvControl, escaped)},
+        {"energy.{}.blocked", offsetof(gpu::LpvControl, blocked)},
+        {"energy.{}.change", offsetof(gpu::LpvControl, change)},
+        {"energy.{}.imbalance", offsetof(gpu::LpvControl, imbalance)},
+        {"iterations.{}", offsetof(gpu::LpvControl, steps)},
+        {"residual.{}", offsetof(gpu::LpvControl, residual)},
+        {"remaining.{}", offsetof(gpu::LpvControl, error)},
+    };
+    statisticNames_.clear();
+    statistics_.clear();
+    for (size_t i = 0; i < lattices; ++i)
+        for (const auto& [format, offset] : kValues) {
+            const size_t outer = lattices - 1 - i;
+            std::string name(format);
+            name.replace(name.find("{}"), 2,
+                         outer == 0 ? "gi.lpv" : "gi.lpv.outer" + std::to_string(outer));
+            statisticNames_.push_back(name);
+            statistics_.push_back(
+                {nullptr, uint32_t((i * sizeof(gpu::LpvControl) + offset) / sizeof(float))});
+        }
+    for (size_t k = 0; k < statistics_.size(); ++k)
+        statistics_[k].name = statisticNames_[k].c_str();
 }
 
 plugin::FrameOutputs LpvTechnique::addPasses(fg::FrameGraph& graph,
@@ -108,6 +151,11 @@ plugin::FrameOutputs LpvTechnique::addPasses(fg::FrameGraph& graph,
 
     // The coarsest first: each begins with the light of the one around it, and gets what comes in from there.
     LatticeLight light;
+    fg::BufferHandle control =
+        graph
+            .persistentBuffer("gi.lpv.control",
+                              fg::BufferDesc{gpu::kLpvMostLevels * sizeof(gpu::LpvControl)})
+            .handle;
     uint64_t place = 0;
     for (size_t i = 0; i < lattices.size(); ++i) {
         Lattice& lattice = lattices[i];
@@ -116,8 +164,10 @@ plugin::FrameOutputs LpvTechnique::addPasses(fg::FrameGraph& graph,
         const uint64_t key = sourceKey(inputs, place);
         if (outer) lattice.sources = addInflow(graph, lattice, *outer);
         // Light goes on from where the last frame left it only where nothing has changed since: a picture never shows what was.
-        lattice.flux =
-            addSteps(graph, lattice, outer, int(i), settings_.steps, stateKeys_[i] == key);
+        lattice.flux = addSteps(
+            graph, lattice, outer,
+            {int(i), settings_.steps, settings_.tolerance, stateKeys_[i] == key, inputs.statistics},
+            control);
         stateKeys_[i] = key;
         if (!lattice.level.covered) light = addLatticeLight(graph, lattice, places, light);
     }
@@ -126,6 +176,12 @@ plugin::FrameOutputs LpvTechnique::addPasses(fg::FrameGraph& graph,
         outputs.surfaceRadiance = addSurfaceLookup(graph, inputs, places.levels, light);
     if (inputs.terms & ~kIndirectOnSurfaces)
         outputs.inScatter = addMediumLookup(graph, inputs, places.levels, light);
+    if (inputs.statistics) {
+        nameStatistics(lattices.size());
+        outputs.statistics = control;
+        outputs.statistic = statistics_.data();
+        outputs.statisticCount = uint32_t(statistics_.size());
+    }
     return outputs;
 }
 

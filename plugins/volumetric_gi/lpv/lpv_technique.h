@@ -3,6 +3,7 @@
 // and media scatter once, and in which it is propagated with extinction and scattering. docs/techniques/lpv.md tells how.
 
 #include <array>
+#include <string>
 #include <vector>
 
 #include "plugin/plugin_api.h"
@@ -24,12 +25,15 @@ public:
 private:
     void addSources(fg::FrameGraph& graph, const plugin::FrameInputs& inputs,
                     std::vector<Lattice>& lattices, plugin::Host& host);
+    void nameStatistics(size_t lattices);
     [[nodiscard]] uint64_t sourceKey(const plugin::FrameInputs& inputs, uint64_t place) const;
 
     LpvSettings settings_{};
     uint32_t saidLeftOut_ = 0; // lights without maps, when it was last said
-    std::array<uint64_t, gpu::kLpvMostLevels>
-        stateKeys_{}; // sourceKey() of what is in the flux buffers
+    // sourceKey() of what is in the deposits and in the flux buffers.
+    std::array<uint64_t, gpu::kLpvMostLevels> depositKeys_{}, stateKeys_{};
+    std::vector<std::string> statisticNames_;
+    std::vector<plugin::Statistic> statistics_;
 };
 
 } // namespace tyndall::volumetric_gi

@@ -30,6 +30,21 @@ vec3 reflectance(uint cell, uint cells) {
     return sum / float(max(links[kLpvSurfaces * cells + cell], 1u) * kLpvReflectanceUnit);
 }
 
+/// What is sent out from within a cell (`emission`, and what is scattered of light whose lobe has `classes`), and all that collides in it
+/// (LatticeModel::send).
+float emittedInside(vec3 classes, float depth, float albedo, float emission, out float collided) {
+    collided = 0.0;
+    float escape = 0.0;
+    for (uint c = 0u; c < kLpvClasses; ++c) {
+        float way = depth * sqrt(float(c + 1u));
+        collided += classes[c] * oneMinusExp(way);
+        escape += params.classWeights[c] * oneMinusExpOverX(way);
+    }
+    float emitted = (emission + albedo * collided) / (1.0 - albedo + albedo * escape);
+    collided += emitted * (1.0 - escape);
+    return emitted;
+}
+
 Arrival gatherLight(ivec3 at, uint cells) {
     uint self = cellIndex(at);
     Arrival a = Arrival(sources[(kLpvEntering + 0u) * cells + self], sources[(kLpvEntering + 1u) * cells + self],

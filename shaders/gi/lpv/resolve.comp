@@ -17,14 +17,8 @@ float meanOfInnerWays(float x) { return x < 0.02 ? 0.5 - x * (1.0 / 6.0 - x * (1
 vec4 channelLight(vec4 arrival, float depth, float albedo, float emission) {
     vec3 classes;
     vec4 lobe = makeLobe(arrival.w, arrival.xyz, classes);
-    float collided = 0.0;
-    float escape = 0.0;
-    for (uint c = 0u; c < kLpvClasses; ++c) {
-        float way = depth * sqrt(float(c + 1u));
-        collided += classes[c] * oneMinusExp(way);
-        escape += params.classWeights[c] * oneMinusExpOverX(way);
-    }
-    float emitted = (emission + albedo * collided) / (1.0 - albedo + albedo * escape);
+    float collided;
+    float emitted = emittedInside(classes, depth, albedo, emission, collided);
     vec4 sum = vec4(0.0);
     for (uint j = 0u; j < kLpvDirections; ++j) {
         vec4 d = params.directions[j].unit;

@@ -1,0 +1,78 @@
+// Sums up what measure.comp found: is the light of a lattice settled? (LEDGER: where did the power go?)
+//
+// The error of light that grows by steps of ratio ρ is the last step times ρ/(1 - ρ). ρ is found from two looks at it.
+#include "shared/lpv.h"
+
+layout(local_size_x = 64) in;
+
+layout(std140) uniform Measure { LpvMeasureParams measure; };
+layout(std430) readonly buffer LpvPartials { float partials[]; };
+layout(std430) buffer LpvControls { LpvControl control[]; };
+
+#if LEDGER
+const uint kSums = 7u;
+#else
+const uint kSums = 2u;
+#endif
+shared float sums[kSums][64];
+
+const float kSlowest = 0.9999; // of ratios from step to step; slower is not told from rounding
+
+void concludeLook() {
+    uint lattice = measure.lattice;
+    float stored = sums[1][0];
+    float residual = stored > 0.0 ? sums[0][0] / stored : 0.0;
+    float before = control[lattice].residual;
+    bool first = control[lattice].steps == 0.0;
+    float error = -1.0;
+    if (residual == 0.0) {
+        error = 0.0;
+    } else if (!first && before > 0.0) {
+        float ratio = min(pow(residual / before, 1.0 / measure.steps), kSlowest);
+        error = residual * ratio / (1.0 - ratio);
+    }
+    control[lattice].steps += measure.steps;
+    control[lattice].residual = residual;
+    control[lattice].error = error;
+    control[lattice].stored = stored;
+    // What comes in from a coarser lattice goes on changing until that one is settled.
+    bool outerSettled = lattice == 0u || control[lattice - 1u].settled != 0u;
+    if (outerSettled && error >= 0.0 && error <= measure.tolerance) {
+        control[lattice].settled = 1u;
+        for (uint i = 0u; i < 3u; ++i) control[lattice].groups[i] = 0u;
+    }
+}
+
+void main() {
+    uint thread = gl_LocalInvocationIndex;
+#if !LEDGER
+    if (control[measure.lattice].settled != 0u) return;
+#endif
+    for (uint i = 0u; i < kSums; ++i) {
+        float sum = 0.0;
+        for (uint group = thread; group < measure.groups; group += 64u) sum += partials[group * kSums + i];
+        sums[i][thread] = sum;
+    }
+    barrier();
+    for (uint reach = 32u; reach > 0u; reach /= 2u) {
+        if (thread < reach)
+            for (uint i = 0u; i < kSums; ++i) sums[i][thread] += sums[i][thread + reach];
+        barrier();
+    }
+    if (thread != 0u) return;
+#if LEDGER
+    uint lattice = measure.lattice;
+    float after = sums[1][0];
+    float before = sums[2][0];
+    control[lattice].stored = after;
+    control[lattice].injected = sums[3][0];
+    control[lattice].absorbed = sums[4][0];
+    control[lattice].escaped = sums[5][0];
+    control[lattice].blocked = sums[6][0];
+    control[lattice].change = after - before;
+    float difference = (before + sums[3][0]) - (after + sums[4][0] + sums[5][0] + sums[6][0]);
+    control[lattice].imbalance = difference / max(before + sums[3][0], 1e-30);
+#else
+    concludeLook();
+#endif
+}

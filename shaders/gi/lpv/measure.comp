@@ -1,0 +1,86 @@
+// What the last step of a lattice changed, and (LEDGER) where the power went: sums over workgroups.
+//
+// Sums are made in one order: the same frame has the same bits.
+#include "gi/lpv/gather.glsl" // LpvFlux: before the step
+
+layout(local_size_x = 8, local_size_y = 4, local_size_z = 2) in;
+
+layout(std430) readonly buffer LpvMedium { vec4 medium[]; };
+layout(std430) readonly buffer LpvSent { float sent[]; }; // after the step
+layout(std430) writeonly buffer LpvPartials { float partials[]; };
+
+#if LEDGER
+const uint kSums = 7u;
+#else
+const uint kSums = 2u;
+#endif
+shared float sums[kSums][64];
+
+/// Powers of the step in a cell: what is put in, absorbed by media, leaves the lattice, is absorbed by surfaces.
+vec4 ledger(ivec3 at, uint cells) {
+    uint self = cellIndex(at);
+    Arrival a = gatherLight(at, cells);
+    vec4 arrivals[3] = vec4[3](a.red, a.green, a.blue);
+    vec3 emission = sources[kLpvEmission * cells + self].rgb;
+    vec3 depth = medium[kLpvDepth * cells + self].rgb;
+    vec3 albedo = medium[kLpvAlbedo * cells + self].rgb;
+    vec4 result = vec4(0.0);
+    for (uint c = 0u; c < 3u; ++c) {
+        vec3 classes;
+        makeLobe(arrivals[c].w, arrivals[c].xyz, classes);
+        float collided;
+        emittedInside(classes, depth[c], albedo[c], emission[c], collided);
+        result.x += emission[c] + sources[(kLpvEntering + c) * cells + self].w;
+        result.y += (1.0 - albedo[c]) * collided;
+    }
+    uint blocked = links[kLpvBlocked * cells + self];
+    vec3 kept = 1.0 - reflectance(self, cells);
+    for (uint j = 0u; j < kLpvDirections; ++j) {
+        vec3 power = fluxOf(self, cells, j);
+        ivec3 to = at + params.directions[j].offset.xyz;
+        if ((blocked & (1u << j)) != 0u)
+            result.w += dot(kept, power);
+        else if (!wrapCell(to))
+            result.z += dot(vec3(1.0), power);
+    }
+    return result;
+}
+
+void main() {
+    ivec3 at = ivec3(gl_GlobalInvocationID);
+    uint thread = gl_LocalInvocationIndex;
+    uint cells = cellCount();
+    float change = 0.0;
+    float after = 0.0;
+    float before = 0.0;
+    vec4 ways = vec4(0.0);
+    if (isInside(at)) {
+        uint self = cellIndex(at);
+        for (uint p = 0u; p < kLpvFluxPlanes; ++p) {
+            float old = flux[p * cells + self];
+            float now = sent[p * cells + self];
+            change += abs(now - old);
+            after += now;
+            before += old;
+        }
+#if LEDGER
+        ways = ledger(at, cells);
+#endif
+    }
+    sums[0][thread] = change;
+    sums[1][thread] = after;
+#if LEDGER
+    sums[2][thread] = before;
+    for (uint i = 0u; i < 4u; ++i) sums[3u + i][thread] = ways[i];
+#endif
+    barrier();
+    for (uint reach = 32u; reach > 0u; reach /= 2u) {
+        if (thread < reach)
+            for (uint i = 0u; i < kSums; ++i) sums[i][thread] += sums[i][thread + reach];
+        barrier();
+    }
+    uvec3 groups = gl_NumWorkGroups;
+    uint group = gl_WorkGroupID.x + groups.x * (gl_WorkGroupID.y + groups.y * gl_WorkGroupID.z);
+    if (thread == 0u)
+        for (uint i = 0u; i < kSums; ++i) partials[group * kSums + i] = sums[i][0];
+}
