@@ -17,6 +17,16 @@ constexpr plugin::TechniqueInfo kTechniques[] = {
      kIndirectOnSurfaces | kIndirectInMedia,
      0}, // one lattice a scene: too coarse for landscapes, until it has cascades
 };
+/// Of all techniques.
+struct CommonSettings {
+    int32_t paper; // index into kModeNames
+};
+constexpr const char* kModeNames[] = {"corrected", "paper"};
+const SettingDesc kCommonSettings[] = {
+    TYNDALL_ENUM(CommonSettings, paper, "gi.mode", "Equations", kModeNames, 0,
+                 "corrected, or as the techniques' papers print them, as far as that can work."),
+};
+
 constexpr uint32_t kLpv = 1; // index in the table
 constexpr plugin::PluginInfo kInfo{"volumetric_gi", "0.1.0",
                                    "Global illumination in scenes with participating media.",
@@ -26,13 +36,17 @@ class VolumetricGi final : public plugin::Plugin {
 public:
     const plugin::PluginInfo& info() const override { return kInfo; }
 
-    uint32_t settingsGroupCount() const override { return 2; }
+    uint32_t settingsGroupCount() const override { return 3; }
     void settingsGroup(uint32_t index, const SettingDesc** fields, uint32_t* count,
                        void** values) override {
-        const std::span<const SettingDesc> all = index == 0 ? octavesSettings() : lpvSettings();
-        *fields = all.data();
-        *count = uint32_t(all.size());
-        *values = index == 0 ? static_cast<void*>(&octaves_) : &lpv_.settings();
+        const auto give = [&](std::span<const SettingDesc> all, void* of) {
+            *fields = all.data();
+            *count = uint32_t(all.size());
+            *values = of;
+        };
+        if (index == 0) return give(kCommonSettings, &common_);
+        if (index == 1) return give(octavesSettings(), &octaves_);
+        give(lpvSettings(), &lpv_.settings());
     }
     void presets(const PresetEntry** entries, uint32_t* count) const override {
         *entries = presets_.data();
@@ -48,7 +62,7 @@ public:
 
     plugin::FrameOutputs addPasses(fg::FrameGraph& graph, uint32_t technique,
                                    const plugin::FrameInputs& inputs) override {
-        if (technique == kLpv) return lpv_.addPasses(graph, inputs, *host_);
+        if (technique == kLpv) return lpv_.addPasses(graph, inputs, *host_, common_.paper != 0);
         plugin::FrameOutputs outputs;
         outputs.inScatter = addOctavesPass(graph, inputs, octaves_);
         return outputs;
@@ -61,6 +75,7 @@ public:
 
 private:
     plugin::Host* host_ = nullptr;
+    CommonSettings common_{};
     OctavesSettings octaves_{};
     LpvTechnique lpv_;
     std::vector<PresetEntry> presets_ = [] {

@@ -91,6 +91,18 @@ struct LpvMeasureParams {
     float tolerance; // error below which light is settled
 };
 
+TYNDALL_CONST float kLpvOne = 3.5449077f; // <L|1> over the coefficient of the first harmonic: 2 sqrt(π)
+
+/// The printed scheme's transfer functions (volumetric_gi/lpv/lattice_directions.h).
+struct LpvTransfer {
+    vec4 harmonics[26]; // Γ_j in 1, y, z, x
+    vec4 share[7];      // γ_j, four to a vector
+    float meanLength;   // of the ways to the neighbours, in cells
+    float padding0;
+    float padding1;
+    float padding2;
+};
+
 /// Of one object's triangles.
 struct LpvTriangles {
     uint strideFloats;

@@ -1,6 +1,7 @@
 // Propagation of light in the lattice: the compute shader against the slow model in double precision, and against laws.
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstring>
 #include <random>
@@ -232,6 +233,94 @@ TEST_P(LpvPropagation, IsTheSameInEveryRun) {
     two.step(30);
     const std::vector<float> a = one.flux(), b = two.flux();
     EXPECT_EQ(std::memcmp(a.data(), b.data(), a.size() * sizeof(float)), 0);
+}
+
+/// The printed scheme in an endless lattice of one medium, λ and λs as in equation 3.
+class GpuPrinted {
+public:
+    GpuPrinted(int size, double lambda, double lambdaS,
+               const std::vector<std::array<double, 4>>& start)
+        : size_(size), cells_(start.size()) {
+        Result<const gl::Program*> found = library_.compute("gi/lpv/printed_step.comp");
+        if (!found) throw std::runtime_error(found.message());
+        program_ = *found;
+        const gpu::LpvParams params = volumetric_gi::latticeParams(ivec3(size), 7);
+        const gpu::LpvTransfer transfer = volumetric_gi::latticeTransfer();
+        std::vector<vec4> medium(cells_ * gpu::kLpvMediumVectors), state(cells_ * 3);
+        for (size_t i = 0; i < cells_; ++i) {
+            medium[gpu::kLpvTrueDepth * cells_ + i] =
+                vec4(float(lambda / double(transfer.meanLength)));
+            medium[gpu::kLpvTrueAlbedo * cells_ + i] = vec4(float(lambdaS / lambda));
+            for (size_t c = 0; c < 3; ++c)
+                for (int k = 0; k < 4; ++k)
+                    state[c * cells_ + i][k] = float(start[i][size_t(k)]) * float(c + 1);
+        }
+        params_ = gl::Buffer("params", std::as_bytes(std::span(&params, 1)));
+        transfer_ = gl::Buffer("transfer", std::as_bytes(std::span(&transfer, 1)));
+        medium_ = gl::Buffer("medium", std::as_bytes(std::span(medium)));
+        links_ = gl::Buffer("links", cells_ * gpu::kLpvLinkPlanes * sizeof(uint32_t));
+        links_.clear();
+        states_[0] = gl::Buffer("state", std::as_bytes(std::span(state)));
+        states_[1] = gl::Buffer("state", cells_ * 3 * sizeof(vec4));
+        sum_ = gl::Buffer("sum", cells_ * 3 * sizeof(vec4));
+        sum_.clear();
+    }
+    void step() {
+        glUseProgram(program_->id());
+        const std::pair<const char*, const gl::Buffer*> storage[] = {{"LpvMedium", &medium_},
+                                                                     {"LpvLinks", &links_},
+                                                                     {"LpvRadiance", &states_[0]},
+                                                                     {"LpvNext", &states_[1]},
+                                                                     {"LpvSum", &sum_}};
+        for (const auto& [name, buffer] : storage)
+            glBindBufferBase(GL_SHADER_STORAGE_BUFFER, GLuint(program_->find(name)->binding),
+                             buffer->id());
+        glBindBufferBase(GL_UNIFORM_BUFFER, GLuint(program_->find("Params")->binding),
+                         params_.id());
+        glBindBufferBase(GL_UNIFORM_BUFFER, GLuint(program_->find("Transfer")->binding),
+                         transfer_.id());
+        glDispatchCompute(GLuint(size_ + 7) / 8, GLuint(size_ + 3) / 4, GLuint(size_ + 1) / 2);
+        glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
+        std::swap(states_[0], states_[1]);
+        glUseProgram(0);
+    }
+    [[nodiscard]] std::vector<vec4> state() const { return states_[0].readAll<vec4>(); }
+
+private:
+    gl::ShaderLibrary library_;
+    const gl::Program* program_ = nullptr;
+    int size_;
+    size_t cells_;
+    gl::Buffer params_, transfer_, medium_, links_, states_[2], sum_;
+};
+
+TEST_P(LpvPropagation, AsPrintedIsThePrintedModels) {
+    constexpr int kSize = 6;
+    std::mt19937 random{uint32_t(seed())};
+    std::uniform_real_distribution<double> unit(0, 1);
+    // One that loses power, one that diverges.
+    for (const auto& [lambda, lambdaS] : {std::pair{0.5, 0.5}, std::pair{2.5, 0.3}}) {
+        PrintedLatticeModel model(kSize, lambda, lambdaS);
+        for (auto& cell : model.state()) {
+            cell[0] = unit(random);
+            for (size_t k = 1; k < 4; ++k) cell[k] = unit(random) - 0.5;
+        }
+        const double first = model.power();
+        GpuPrinted printed(kSize, lambda, lambdaS, model.state());
+        for (int i = 0; i < 30; ++i) {
+            model.step();
+            printed.step();
+        }
+        double most = 0;
+        for (const auto& cell : model.state())
+            for (const double v : cell) most = std::max(most, std::abs(v));
+        const std::vector<vec4> state = printed.state();
+        for (size_t i = 0; i < model.state().size(); ++i)
+            for (int k = 0; k < 4; ++k)
+                ASSERT_NEAR(double(state[i][k]), model.state()[i][size_t(k)], 1e-4 * most);
+        // Power, the mean over the lattice, is multiplied by 1 - λ + 0.696 λs in each step.
+        EXPECT_NEAR(model.power() / first / std::pow(1 - lambda + 0.6960 * lambdaS, 30), 1, 5e-3);
+    }
 }
 
 } // namespace

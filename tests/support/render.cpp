@@ -63,6 +63,7 @@ Rendered TestRenderer::render(const Scene& scene, const RenderOptions& options) 
     request.seed = options.seed;
     request.converge = options.converge || options.frames > 1;
     request.separateTerms = options.separateTerms;
+    request.statistics = options.statistics;
     for (int frame = 0; frame < options.frames; ++frame) {
         request.frameIndex = uint32_t(frame);
         request.restart = frame == 0;
@@ -77,6 +78,7 @@ Rendered TestRenderer::render(const Scene& scene, const RenderOptions& options) 
             expectValid(term.image, term.name);
             rendered.terms[term.name] = std::move(term.image);
         }
+    rendered.statistics = renderer_->readStatistics();
     rendered.display = renderer_->readDisplay();
     for (const fg::PassReport& pass : renderer_->report().passes)
         rendered.passes[std::string(pass.name)] =

@@ -21,6 +21,7 @@ struct RenderOptions {
     TermSet terms = kAllTerms;
     uint32_t seed = 0;
     bool separateTerms = true;
+    bool statistics = false;
 };
 
 struct Rendered {
@@ -28,6 +29,7 @@ struct Rendered {
     std::map<std::string, Image> terms; // "LE", "LSE", "LVE", …
     std::vector<uint8_t> display;
     std::map<std::string, std::string> passes; // name → "ran", "skipped: no medium in the scene", …
+    std::map<std::string, double> statistics; // where options ask for them
     FrameResult frame;
 
     /// Mean over a square of 2·radius+1 pixels around the picture's centre, or around (x, y) from the top left.

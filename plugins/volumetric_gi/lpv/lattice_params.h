@@ -21,4 +21,16 @@ namespace tyndall::volumetric_gi {
     return params;
 }
 
+/// The printed scheme's transfer functions.
+[[nodiscard]] inline gpu::LpvTransfer latticeTransfer() {
+    gpu::LpvTransfer transfer{};
+    for (size_t j = 0; j < kLatticeDirections; ++j) {
+        const TransferFunction& t = transferFunctions()[j];
+        for (int k = 0; k < 4; ++k) transfer.harmonics[j][k] = float(t.harmonics[size_t(k)]);
+        transfer.share[j / 4][int(j % 4)] = float(t.printedShare);
+        transfer.meanLength += float(latticeDirections()[j].length / kLatticeDirections);
+    }
+    return transfer;
+}
+
 } // namespace tyndall::volumetric_gi

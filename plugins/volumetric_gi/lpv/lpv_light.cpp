@@ -18,6 +18,13 @@ Command& bindLight(Command& command, const LatticeLight& light, const gpu::LpvLe
         .bind("blueLight", light.blue);
 }
 
+LatticeLight writeLight(fg::Builder& builder, const LatticeLight& light) {
+    return {builder.write(light.red), builder.write(light.green), builder.write(light.blue),
+            builder.write(light.sides)};
+}
+
+} // namespace
+
 LatticeLight createLight(fg::Builder& builder, const SharedPlaces& places) {
     const fg::TextureDesc desc =
         fg::texture3D(fg::Format::RGBA32F, places.across.x, places.across.y, places.layers);
@@ -25,13 +32,6 @@ LatticeLight createLight(fg::Builder& builder, const SharedPlaces& places) {
             builder.create("gi.lpv.blue", desc),
             builder.create("gi.lpv.sides", fg::BufferDesc{places.links * sizeof(uint32_t)})};
 }
-
-LatticeLight writeLight(fg::Builder& builder, const LatticeLight& light) {
-    return {builder.write(light.red), builder.write(light.green), builder.write(light.blue),
-            builder.write(light.sides)};
-}
-
-} // namespace
 
 LatticeLight addLatticeLight(fg::FrameGraph& graph, const Lattice& lattice,
                              const SharedPlaces& places, const LatticeLight& others) {

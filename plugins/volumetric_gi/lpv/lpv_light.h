@@ -14,6 +14,9 @@ struct LatticeLight {
     fg::BufferHandle sides;
 };
 
+/// For the pass that is the first to write light.
+[[nodiscard]] LatticeLight createLight(fg::Builder& builder, const SharedPlaces& places);
+
 /// Adds one lattice's light to that of others; null handles where it is the first.
 [[nodiscard]] LatticeLight addLatticeLight(fg::FrameGraph& graph, const Lattice& lattice,
                                            const SharedPlaces& places, const LatticeLight& others);

@@ -7,7 +7,7 @@
 
 #include "framegraph/hash.h"
 #include "volumetric_gi/lpv/lpv_injection.h"
-#include "volumetric_gi/lpv/lpv_light.h"
+#include "volumetric_gi/lpv/lpv_printed.h"
 
 namespace tyndall::volumetric_gi {
 namespace {
@@ -134,28 +134,11 @@ void LpvTechnique::nameStatistics(size_t lattices) {
         statistics_[k].name = statisticNames_[k].c_str();
 }
 
-plugin::FrameOutputs LpvTechnique::addPasses(fg::FrameGraph& graph,
-                                             const plugin::FrameInputs& inputs,
-                                             plugin::Host& host) {
-    const PlacementRequest placement = placementOf(inputs, settings_);
-    if (placement.bounds.empty() || inputs.lights.lightCount == 0) return {};
-    std::vector<LatticeLevel> levels = placeLattices(placement);
-    const SharedPlaces places = sharePlaces(levels);
-    std::vector<Lattice> lattices(levels.size());
-    for (size_t i = 0; i < levels.size(); ++i) {
-        lattices[i].level = levels[i];
-        lattices[i].medium = addLatticeMedium(graph, inputs, levels[i]);
-        lattices[i].links = addLatticeLinks(graph, inputs, levels[i]);
-    }
-    addSources(graph, inputs, lattices, host);
-
-    // The coarsest first: each begins with the light of the one around it, and gets what comes in from there.
+/// The coarsest first: each lattice begins with the light of the one around it, and gets what comes in from there.
+LatticeLight LpvTechnique::addLight(fg::FrameGraph& graph, const plugin::FrameInputs& inputs,
+                                    std::vector<Lattice>& lattices, const SharedPlaces& places,
+                                    fg::BufferHandle& control) {
     LatticeLight light;
-    fg::BufferHandle control =
-        graph
-            .persistentBuffer("gi.lpv.control",
-                              fg::BufferDesc{gpu::kLpvMostLevels * sizeof(gpu::LpvControl)})
-            .handle;
     uint64_t place = 0;
     for (size_t i = 0; i < lattices.size(); ++i) {
         Lattice& lattice = lattices[i];
@@ -171,6 +154,35 @@ plugin::FrameOutputs LpvTechnique::addPasses(fg::FrameGraph& graph,
         stateKeys_[i] = key;
         if (!lattice.level.covered) light = addLatticeLight(graph, lattice, places, light);
     }
+    return light;
+}
+
+plugin::FrameOutputs LpvTechnique::addPasses(fg::FrameGraph& graph,
+                                             const plugin::FrameInputs& inputs, plugin::Host& host,
+                                             bool printed) {
+    PlacementRequest placement = placementOf(inputs, settings_);
+    if (placement.bounds.empty() || inputs.lights.lightCount == 0) return {};
+    if (printed) {
+        placement.most = 1;
+        placement.extent = 0;
+        placement.content = placement.bounds;
+    }
+    std::vector<LatticeLevel> levels = placeLattices(placement);
+    const SharedPlaces places = sharePlaces(levels);
+    std::vector<Lattice> lattices(levels.size());
+    for (size_t i = 0; i < levels.size(); ++i) {
+        lattices[i].level = levels[i];
+        lattices[i].medium = addLatticeMedium(graph, inputs, levels[i]);
+        lattices[i].links = addLatticeLinks(graph, inputs, levels[i]);
+    }
+    addSources(graph, inputs, lattices, host);
+
+    const fg::BufferDesc desc{gpu::kLpvMostLevels * sizeof(gpu::LpvControl)};
+    fg::BufferHandle control = graph.persistentBuffer("gi.lpv.control", desc).handle;
+    if (printed) stateKeys_ = {};
+    const LatticeLight light =
+        printed ? addPrintedLight(graph, lattices[0], places, settings_.steps, control)
+                : addLight(graph, inputs, lattices, places, control);
     plugin::FrameOutputs outputs;
     if (inputs.terms & kIndirectOnSurfaces)
         outputs.surfaceRadiance = addSurfaceLookup(graph, inputs, places.levels, light);

@@ -9,6 +9,7 @@
 #include "plugin/plugin_api.h"
 #include "shared/lpv.h"
 #include "volumetric_gi/lpv/lpv_lattice.h"
+#include "volumetric_gi/lpv/lpv_light.h"
 #include "volumetric_gi/lpv/lpv_settings.h"
 #include "volumetric_gi/rsm/rsm_views.h"
 
@@ -19,12 +20,16 @@ public:
     [[nodiscard]] LpvSettings& settings() { return settings_; }
     /// Light of the lattices on surfaces and in media, as far as `inputs.terms` asks for it.
     /// Says once through `host` how many lights have no map.
+    /// `printed`: by the scheme as the paper prints it, in one lattice around the scene and from nothing each frame.
     plugin::FrameOutputs addPasses(fg::FrameGraph& graph, const plugin::FrameInputs& inputs,
-                                   plugin::Host& host);
+                                   plugin::Host& host, bool printed);
 
 private:
     void addSources(fg::FrameGraph& graph, const plugin::FrameInputs& inputs,
                     std::vector<Lattice>& lattices, plugin::Host& host);
+    LatticeLight addLight(fg::FrameGraph& graph, const plugin::FrameInputs& inputs,
+                          std::vector<Lattice>& lattices, const SharedPlaces& places,
+                          fg::BufferHandle& control);
     void nameStatistics(size_t lattices);
     [[nodiscard]] uint64_t sourceKey(const plugin::FrameInputs& inputs, uint64_t place) const;
 

@@ -1,20 +1,13 @@
 // Sums up what measure.comp found: is the light of a lattice settled? (LEDGER: where did the power go?)
 //
 // The error of light that grows by steps of ratio ρ is the last step times ρ/(1 - ρ). ρ is found from two looks at it.
+#include "gi/lpv/workgroup_sums.glsl"
 #include "shared/lpv.h"
 
 layout(local_size_x = 64) in;
 
 layout(std140) uniform Measure { LpvMeasureParams measure; };
-layout(std430) readonly buffer LpvPartials { float partials[]; };
 layout(std430) buffer LpvControls { LpvControl control[]; };
-
-#if LEDGER
-const uint kSums = 7u;
-#else
-const uint kSums = 2u;
-#endif
-shared float sums[kSums][64];
 
 const float kSlowest = 0.9999; // of ratios from step to step; slower is not told from rounding
 
@@ -48,17 +41,12 @@ void main() {
 #if !LEDGER
     if (control[measure.lattice].settled != 0u) return;
 #endif
+    float values[kSums];
     for (uint i = 0u; i < kSums; ++i) {
-        float sum = 0.0;
-        for (uint group = thread; group < measure.groups; group += 64u) sum += partials[group * kSums + i];
-        sums[i][thread] = sum;
+        values[i] = 0.0;
+        for (uint group = thread; group < measure.groups; group += 64u) values[i] += partials[group * kSums + i];
     }
-    barrier();
-    for (uint reach = 32u; reach > 0u; reach /= 2u) {
-        if (thread < reach)
-            for (uint i = 0u; i < kSums; ++i) sums[i][thread] += sums[i][thread + reach];
-        barrier();
-    }
+    sumUp(values);
     if (thread != 0u) return;
 #if LEDGER
     uint lattice = measure.lattice;
@@ -71,7 +59,7 @@ void main() {
     control[lattice].blocked = sums[6][0];
     control[lattice].change = after - before;
     float difference = (before + sums[3][0]) - (after + sums[4][0] + sums[5][0] + sums[6][0]);
-    control[lattice].imbalance = difference / max(before + sums[3][0], 1e-30);
+    control[lattice].imbalance = difference / max(abs(before + sums[3][0]), 1e-30);
 #else
     concludeLook();
 #endif

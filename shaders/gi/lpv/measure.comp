@@ -1,21 +1,12 @@
 // What the last step of a lattice changed, and (LEDGER) where the power went: sums over workgroups.
-//
-// Sums are made in one order: the same frame has the same bits.
 #include "gi/lpv/gather.glsl" // LpvFlux: before the step
+#include "gi/lpv/workgroup_sums.glsl"
 
 layout(local_size_x = 8, local_size_y = 4, local_size_z = 2) in;
 
 layout(std430) readonly buffer LpvMedium { vec4 medium[]; };
 layout(std430) readonly buffer LpvSent { float sent[]; }; // after the step
-layout(std430) writeonly buffer LpvPartials { float partials[]; };
-
 #if LEDGER
-const uint kSums = 7u;
-#else
-const uint kSums = 2u;
-#endif
-shared float sums[kSums][64];
-
 /// Powers of the step in a cell: what is put in, absorbed by media, leaves the lattice, is absorbed by surfaces.
 vec4 ledger(ivec3 at, uint cells) {
     uint self = cellIndex(at);
@@ -45,42 +36,28 @@ vec4 ledger(ivec3 at, uint cells) {
     }
     return result;
 }
+#endif
 
 void main() {
     ivec3 at = ivec3(gl_GlobalInvocationID);
-    uint thread = gl_LocalInvocationIndex;
     uint cells = cellCount();
-    float change = 0.0;
-    float after = 0.0;
-    float before = 0.0;
-    vec4 ways = vec4(0.0);
+    float values[kSums];
+    for (uint i = 0u; i < kSums; ++i) values[i] = 0.0;
     if (isInside(at)) {
         uint self = cellIndex(at);
         for (uint p = 0u; p < kLpvFluxPlanes; ++p) {
             float old = flux[p * cells + self];
             float now = sent[p * cells + self];
-            change += abs(now - old);
-            after += now;
-            before += old;
+            values[0] += abs(now - old);
+            values[1] += now;
+#if LEDGER
+            values[2] += old;
+#endif
         }
 #if LEDGER
-        ways = ledger(at, cells);
+        vec4 ways = ledger(at, cells);
+        for (uint i = 0u; i < 4u; ++i) values[3u + i] = ways[i];
 #endif
     }
-    sums[0][thread] = change;
-    sums[1][thread] = after;
-#if LEDGER
-    sums[2][thread] = before;
-    for (uint i = 0u; i < 4u; ++i) sums[3u + i][thread] = ways[i];
-#endif
-    barrier();
-    for (uint reach = 32u; reach > 0u; reach /= 2u) {
-        if (thread < reach)
-            for (uint i = 0u; i < kSums; ++i) sums[i][thread] += sums[i][thread + reach];
-        barrier();
-    }
-    uvec3 groups = gl_NumWorkGroups;
-    uint group = gl_WorkGroupID.x + groups.x * (gl_WorkGroupID.y + groups.y * gl_WorkGroupID.z);
-    if (thread == 0u)
-        for (uint i = 0u; i < kSums; ++i) partials[group * kSums + i] = sums[i][0];
+    leaveSums(values);
 }

@@ -1,0 +1,28 @@
+// The printed scheme's light as look-ups take it. Section 4 ray-marches the power of a cell as light that crosses it: over the mean distance of two
+// neighbours.
+#include "gi/lpv/printed.glsl" // LpvRadiance: the sum over all steps
+
+layout(local_size_x = 8, local_size_y = 4, local_size_z = 2) in;
+
+layout(std430) writeonly buffer LpvSides { uint sides[]; };
+layout(rgba32f) writeonly uniform image3D redLight;
+layout(rgba32f) writeonly uniform image3D greenLight;
+layout(rgba32f) writeonly uniform image3D blueLight;
+
+/// xyz: vector flux, w: fluence. Coefficients of the sum may be negative where the scheme diverges; light is not.
+vec4 lightOf(vec4 l, float unit) {
+    return unit * vec4(l.w, l.y, l.z, 0.0) * (kLpvOne / sqrt(3.0)) + vec4(0.0, 0.0, 0.0, max(unit * kLpvOne * l.x, 0.0));
+}
+
+void main() {
+    ivec3 at = ivec3(gl_GlobalInvocationID);
+    if (!isInside(at)) return;
+    uint cells = cellCount();
+    uint self = cellIndex(at);
+    for (uint p = 0u; p < kLpvSidePlanes; ++p) sides[uint(params.grid.place.y) + p * cells + self] = links[p * cells + self];
+    float unit = transfer.meanLength / (params.grid.lowest.w * params.grid.lowest.w);
+    ivec3 to = at + ivec3(0, 0, params.grid.place.x);
+    imageStore(redLight, to, lightOf(radianceOf(self, cells, 0u), unit));
+    imageStore(greenLight, to, lightOf(radianceOf(self, cells, 1u), unit));
+    imageStore(blueLight, to, lightOf(radianceOf(self, cells, 2u), unit));
+}
