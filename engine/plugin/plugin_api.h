@@ -102,6 +102,7 @@ struct FrameInputs {
     SurfaceDrawer* surfaces;
     TermSet terms;   // that the plan gives to this plugin
     bool statistics; // somebody asks for FrameOutputs::statistics
+    float whiteNits; // luminance that the picture's exposure makes white, before the tone curve
 };
 
 /// A number about a frame: "iterations.gi.lpv", "residual.gi.lpv", "energy.gi.lpv.injected". The part before the first dot names its kind.

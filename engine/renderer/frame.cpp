@@ -126,7 +126,8 @@ FrameImages recordFrame(fg::FrameGraph& graph, const FrameParts& parts, const Fr
                                parts.lights.lights().data(),
                                &parts.drawer,
                                0,
-                               order.statistics};
+                               order.statistics,
+                               displayWhite(order.ev100, parts.postSettings)};
     addTechniques(graph, parts, order, inputs, images);
 
     // Transparent surfaces, then the sum of all terms.

@@ -23,6 +23,10 @@ const SettingDesc kPostSettings[] = {
 
 std::span<const SettingDesc> postSettings() { return kPostSettings; }
 
+float displayWhite(float ev100, const PostSettings& settings) {
+    return 1.2f * std::exp2(ev100 - settings.exposureCompensation);
+}
+
 Display addTonemapPass(fg::FrameGraph& graph, fg::TextureHandle color, float ev100,
                        const PostSettings& settings, uint32_t seed) {
     struct Data {
@@ -40,7 +44,7 @@ Display addTonemapPass(fg::FrameGraph& graph, fg::TextureHandle color, float ev1
                     "display", fg::texture2D(fg::Format::RGBA8, size.width, size.height));
                 data.display.invalidPixels =
                     builder.create("display.invalidPixels", fg::BufferDesc{2 * sizeof(uint32_t)});
-                const float exposure = std::exp2(settings.exposureCompensation - ev100) / 1.2f;
+                const float exposure = 1 / displayWhite(ev100, settings);
                 data.params = {exposure, uint32_t(settings.curve), settings.dither ? 1u : 0u, seed};
             },
             [](const Data& data, fg::PassContext& context) {

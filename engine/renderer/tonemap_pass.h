@@ -20,6 +20,9 @@ struct Display {
         invalidPixels; // two counters: non-finite, negative (see shaders/post/tonemap.comp)
 };
 
+/// Nits that are shown white before the tone curve: 1.2 · 2^EV100, less the compensation.
+[[nodiscard]] float displayWhite(float ev100, const PostSettings& settings);
+
 /// `color` in nits at EV100 `ev100`: 1.2·2^EV100 nits are display white (ISO 2720's saturation-based exposure).
 Display addTonemapPass(fg::FrameGraph& graph, fg::TextureHandle color, float ev100,
                        const PostSettings& settings, uint32_t seed);

@@ -67,9 +67,9 @@ public:
         outputs.inScatter = addOctavesPass(graph, inputs, octaves_);
         return outputs;
     }
-    fg::TextureHandle addPostPasses(fg::FrameGraph&, const plugin::FrameInputs&,
+    fg::TextureHandle addPostPasses(fg::FrameGraph& graph, const plugin::FrameInputs& inputs,
                                     fg::TextureHandle color) override {
-        return color;
+        return lpv_.addPostPasses(graph, inputs, color);
     }
     void destroy() override { delete this; }
 

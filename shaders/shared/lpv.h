@@ -103,6 +103,21 @@ struct LpvTransfer {
     float padding2;
 };
 
+TYNDALL_CONST uint kLpvShowLight = 1u;
+TYNDALL_CONST uint kLpvShowDirections = 2u;
+TYNDALL_CONST uint kLpvShowMedium = 3u;
+TYNDALL_CONST uint kLpvShowSurfaces = 4u;
+TYNDALL_CONST uint kLpvShowResidual = 5u;
+TYNDALL_CONST uint kLpvShowLosses = 6u;
+
+/// A slice of a lattice in the picture.
+struct LpvShowParams {
+    uint what;
+    int axis;
+    int layer;
+    float white; // nits that are shown white
+};
+
 /// Of one object's triangles.
 struct LpvTriangles {
     uint strideFloats;

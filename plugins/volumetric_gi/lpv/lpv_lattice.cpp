@@ -212,8 +212,8 @@ void recordSteps(const StepsData& data, fg::PassContext& context) {
 
 } // namespace
 
-fg::BufferHandle addSteps(fg::FrameGraph& graph, const Lattice& lattice, const Lattice* outer,
-                          const StepsRequest& request, fg::BufferHandle& control) {
+Flux addSteps(fg::FrameGraph& graph, const Lattice& lattice, const Lattice* outer,
+              const StepsRequest& request, fg::BufferHandle& control) {
     static constexpr const char* kNames[gpu::kLpvMostLevels][2] = {
         {"gi.lpv.flux", "gi.lpv.flux.other"},
         {"gi.lpv.flux1", "gi.lpv.flux1.other"},
@@ -249,7 +249,7 @@ fg::BufferHandle addSteps(fg::FrameGraph& graph, const Lattice& lattice, const L
         },
         [](const StepsData& data, fg::PassContext& context) { recordSteps(data, context); });
     control = pass.control;
-    return pass.flux[0];
+    return {pass.flux[0], pass.flux[1]};
 }
 
 } // namespace tyndall::volumetric_gi

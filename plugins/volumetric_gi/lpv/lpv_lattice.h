@@ -8,7 +8,7 @@ namespace tyndall::volumetric_gi {
 
 struct Lattice {
     LatticeLevel level;
-    fg::BufferHandle medium, links, sources, flux; // LpvMedium and so on, shared/lpv.h
+    fg::BufferHandle medium, links, sources, flux, fluxBefore; // LpvMedium and so on, shared/lpv.h
 };
 
 /// What the media are in each cell. Kept while they and the lattice stay.
@@ -25,6 +25,9 @@ struct Lattice {
 [[nodiscard]] fg::BufferHandle addInflow(fg::FrameGraph& graph, const Lattice& lattice,
                                          const Lattice& outer);
 
+struct Flux {
+    fg::BufferHandle now, before; // LpvFlux after the last step and before it
+};
 struct StepsRequest {
     int lattice;     // number among the lattices, the coarsest is 0
     int most;        // steps; fewer where light is settled before
@@ -33,9 +36,8 @@ struct StepsRequest {
         goOn; // from where the last frame left the light; else from that of the coarser lattice around it, or from darkness
     bool ledger; // fill in where the power goes
 };
-/// Propagates light. `control`: LpvControl of each lattice, its next version on return. Returns the flux.
-[[nodiscard]] fg::BufferHandle addSteps(fg::FrameGraph& graph, const Lattice& lattice,
-                                        const Lattice* outer, const StepsRequest& request,
-                                        fg::BufferHandle& control);
+/// Propagates light. `control`: LpvControl of each lattice, its next version on return.
+[[nodiscard]] Flux addSteps(fg::FrameGraph& graph, const Lattice& lattice, const Lattice* outer,
+                            const StepsRequest& request, fg::BufferHandle& control);
 
 } // namespace tyndall::volumetric_gi

@@ -3,6 +3,10 @@
 namespace tyndall::volumetric_gi {
 namespace {
 
+constexpr const char* kShowNames[] = {"nothing",  "light",    "directions", "medium",
+                                      "surfaces", "residual", "losses"};
+constexpr const char* kAxisNames[] = {"x", "y", "z"};
+
 const SettingDesc kLpvSettings[] = {
     TYNDALL_INT(
         LpvSettings, resolution, "gi.lpv.resolution", "Lattice cells", "", 4, 64, 32,
@@ -29,6 +33,17 @@ const SettingDesc kLpvSettings[] = {
                  "Light that surfaces reflect goes into the lattice."),
     TYNDALL_BOOL(LpvSettings, scattered, "gi.lpv.scattered", "Scattered light", true,
                  "Light that media scatter once goes into the lattice."),
+    TYNDALL_BOOL(
+        LpvSettings, keep, "gi.lpv.keep", "Keep light", true,
+        "Where nothing has changed light is kept from frame to frame; off: found anew in each, to be timed."),
+    TYNDALL_ENUM(
+        LpvSettings, show, "gi.lpv.show", "Show", kShowNames, 0,
+        "A slice of the finest lattice in the picture: its light, where light goes, the depth of a cell of medium (2: white), its surfaces, what the last "
+        "step changed (a tenth: white), the part of the light that media and surfaces absorb."),
+    TYNDALL_ENUM(LpvSettings, showAxis, "gi.lpv.showAxis", "Across", kAxisNames, 2,
+                 "The axis that the slice is across."),
+    TYNDALL_FLOAT(LpvSettings, showAt, "gi.lpv.showAt", "At", "", 0.0f, 1.0f, 0.5f,
+                  "Where on that axis: 0 the lattice's one end, 1 its other."),
 };
 
 constexpr PresetEntry kLpvPresets[] = {

@@ -17,7 +17,10 @@ struct LpvSettings {
     int32_t rsmSize;
     int32_t rsmLights;
     int32_t rsmRectPoints;
-    bool reflected, scattered;
+    bool reflected, scattered, keep;
+    int32_t show; // 0: nothing, else kLpvShow…
+    int32_t showAxis;
+    float showAt;
 };
 std::span<const SettingDesc> lpvSettings();
 std::span<const PresetEntry> lpvPresets();

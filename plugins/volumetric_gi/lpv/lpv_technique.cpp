@@ -8,6 +8,7 @@
 #include "framegraph/hash.h"
 #include "volumetric_gi/lpv/lpv_injection.h"
 #include "volumetric_gi/lpv/lpv_printed.h"
+#include "volumetric_gi/lpv/lpv_show.h"
 
 namespace tyndall::volumetric_gi {
 namespace {
@@ -83,7 +84,7 @@ void LpvTechnique::addSources(fg::FrameGraph& graph, const plugin::FrameInputs& 
         const Lattice& lattice = lattices[i];
         const fg::PersistentBuffer kept = keptDeposits(graph, int(i), lattice.level.cells);
         const uint64_t key = sourceKey(inputs, lattice.level.key);
-        stale.push_back(kept.wasReset || depositKeys_[i] != key);
+        stale.push_back(kept.wasReset || depositKeys_[i] != key || !settings_.keep);
         depositKeys_[i] = key;
         injections.push_back({lattice.medium, lattice.links, kept.handle, lattice.level.params,
                               injectParams(plan.power[i])});
@@ -147,10 +148,12 @@ LatticeLight LpvTechnique::addLight(fg::FrameGraph& graph, const plugin::FrameIn
         const uint64_t key = sourceKey(inputs, place);
         if (outer) lattice.sources = addInflow(graph, lattice, *outer);
         // Light goes on from where the last frame left it only where nothing has changed since: a picture never shows what was.
-        lattice.flux = addSteps(
-            graph, lattice, outer,
-            {int(i), settings_.steps, settings_.tolerance, stateKeys_[i] == key, inputs.statistics},
-            control);
+        const Flux flux = addSteps(graph, lattice, outer,
+                                   {int(i), settings_.steps, settings_.tolerance,
+                                    settings_.keep && stateKeys_[i] == key, inputs.statistics},
+                                   control);
+        lattice.flux = flux.now;
+        lattice.fluxBefore = flux.before;
         stateKeys_[i] = key;
         if (!lattice.level.covered) light = addLatticeLight(graph, lattice, places, light);
     }
@@ -160,6 +163,7 @@ LatticeLight LpvTechnique::addLight(fg::FrameGraph& graph, const plugin::FrameIn
 plugin::FrameOutputs LpvTechnique::addPasses(fg::FrameGraph& graph,
                                              const plugin::FrameInputs& inputs, plugin::Host& host,
                                              bool printed) {
+    finest_ = {};
     PlacementRequest placement = placementOf(inputs, settings_);
     if (placement.bounds.empty() || inputs.lights.lightCount == 0) return {};
     if (printed) {
@@ -183,6 +187,8 @@ plugin::FrameOutputs LpvTechnique::addPasses(fg::FrameGraph& graph,
     const LatticeLight light =
         printed ? addPrintedLight(graph, lattices[0], places, settings_.steps, control)
                 : addLight(graph, inputs, lattices, places, control);
+    finest_ = lattices.back();
+    light_ = light;
     plugin::FrameOutputs outputs;
     if (inputs.terms & kIndirectOnSurfaces)
         outputs.surfaceRadiance = addSurfaceLookup(graph, inputs, places.levels, light);
@@ -195,6 +201,15 @@ plugin::FrameOutputs LpvTechnique::addPasses(fg::FrameGraph& graph,
         outputs.statisticCount = uint32_t(statistics_.size());
     }
     return outputs;
+}
+
+fg::TextureHandle LpvTechnique::addPostPasses(fg::FrameGraph& graph,
+                                              const plugin::FrameInputs& inputs,
+                                              fg::TextureHandle color) {
+    const fg::TextureHandle shown =
+        addLatticeSlice(graph, inputs, settings_, finest_, light_, color);
+    finest_ = {}; // of this frame alone
+    return shown;
 }
 
 } // namespace tyndall::volumetric_gi

@@ -23,6 +23,9 @@ public:
     /// `printed`: by the scheme as the paper prints it, in one lattice around the scene and from nothing each frame.
     plugin::FrameOutputs addPasses(fg::FrameGraph& graph, const plugin::FrameInputs& inputs,
                                    plugin::Host& host, bool printed);
+    /// A slice of the finest lattice in the finished picture, where settings ask for it.
+    fg::TextureHandle addPostPasses(fg::FrameGraph& graph, const plugin::FrameInputs& inputs,
+                                    fg::TextureHandle color);
 
 private:
     void addSources(fg::FrameGraph& graph, const plugin::FrameInputs& inputs,
@@ -37,6 +40,8 @@ private:
     uint32_t saidLeftOut_ = 0; // lights without maps, when it was last said
     // sourceKey() of what is in the deposits and in the flux buffers.
     std::array<uint64_t, gpu::kLpvMostLevels> depositKeys_{}, stateKeys_{};
+    Lattice finest_; // of this frame
+    LatticeLight light_;
     std::vector<std::string> statisticNames_;
     std::vector<plugin::Statistic> statistics_;
 };
