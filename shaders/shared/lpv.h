@@ -11,6 +11,11 @@ TYNDALL_CONST uint kLpvClasses = 3u;     // of directions: across a face, an edg
 // LpvFlux, floats: power that a cell sends in direction j in a step, of channel c: plane 3 j + c.
 TYNDALL_CONST uint kLpvFluxPlanes = 78u;
 
+// LpvLit: 1 for each block of cells that has sent light since steps began; the others, and what they would send, are dark.
+TYNDALL_CONST uint kLpvBlockX = 8u; // cells; a workgroup of a step
+TYNDALL_CONST uint kLpvBlockY = 4u;
+TYNDALL_CONST uint kLpvBlockZ = 2u;
+
 // LpvMedium
 TYNDALL_CONST uint kLpvPassed = 0u; // 3, rgb of each class: e^(-σ l), the part that crosses the cell
 TYNDALL_CONST uint kLpvDepth = 3u;  // rgb: transport extinction times the cell's edge
@@ -47,7 +52,7 @@ struct LpvGrid {
     ivec4 size;  // cells along each axis; w: bit a: what leaves along axis a comes in again on the other side
     vec4 lowest; // corner of the lattice, render space; w: edge of a cell, metres
     ivec4 place; // among several: x: first layer of the light's textures, y: first element of the links, z: bit a: along axis a the next coarser
-                 // lattice goes on
+                 // lattice goes on, w: 1: a step takes all cells, dark or not
 };
 
 /// The lattices that light is looked up in, the finest first.

@@ -59,8 +59,13 @@ public:
             state = gl::Buffer("state", cells_ * gpu::kLpvFluxPlanes * sizeof(float));
             state.clear();
         }
-        const gpu::LpvParams params = volumetric_gi::latticeParams(size, repeats);
+        gpu::LpvParams params = volumetric_gi::latticeParams(size, repeats);
         params_ = gl::Buffer("params", std::as_bytes(std::span(&params, 1)));
+        params.grid.place.w = 1;
+        allParams_ = gl::Buffer("params", std::as_bytes(std::span(&params, 1)));
+        const ivec3 blocks = volumetric_gi::blocksOf(size);
+        lit_ = gl::Buffer("lit", size_t(blocks.x * blocks.y * blocks.z) * sizeof(uint32_t));
+        lit_.clear();
     }
 
     void step(int count = 1) {
@@ -71,8 +76,9 @@ public:
             bind("LpvLinks", links_);
             bind("LpvFlux", states_[0]);
             bind("LpvSent", states_[1]);
+            bind("LpvLit", lit_);
             glBindBufferBase(GL_UNIFORM_BUFFER, GLuint(program_->find("Params")->binding),
-                             params_.id());
+                             (steps_++ < 2 ? allParams_ : params_).id());
             glDispatchCompute(GLuint(size_.x + 7) / 8, GLuint(size_.y + 3) / 4,
                               GLuint(size_.z + 1) / 2);
             glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
@@ -83,6 +89,8 @@ public:
     }
     /// The sources' light stops.
     void darken() { sources_.clear(); }
+    /// 1 for each block that has been stepped with light in it or about it.
+    [[nodiscard]] std::vector<uint32_t> lit() const { return lit_.readAll<uint32_t>(); }
     [[nodiscard]] std::vector<float> flux() const { return states_[0].readAll<float>(); }
     /// Power of a channel that each cell sends out.
     [[nodiscard]] std::vector<double> powers(uint32_t channel) const {
@@ -104,7 +112,8 @@ private:
     const gl::Program* program_ = nullptr;
     ivec3 size_;
     size_t cells_;
-    gl::Buffer medium_, sources_, links_, states_[2], params_;
+    int steps_ = 0;
+    gl::Buffer medium_, sources_, links_, states_[2], params_, allParams_, lit_;
 };
 
 /// Every cell with its own medium and sources; seeded.
@@ -233,6 +242,41 @@ TEST_P(LpvPropagation, IsTheSameInEveryRun) {
     two.step(30);
     const std::vector<float> a = one.flux(), b = two.flux();
     EXPECT_EQ(std::memcmp(a.data(), b.data(), a.size() * sizeof(float)), 0);
+}
+
+TEST_P(LpvPropagation, LeavesOutWhatIsDark) {
+    // A lamp in one corner of a long hall; a wall across it keeps the rest dark. Where light goes it is that of the model.
+    const ivec3 size(48, 8, 8);
+    LatticeModel model(size, {false, false, false});
+    const auto& directions = volumetric_gi::latticeDirections();
+    for (int z = 0; z < size.z; ++z)
+        for (int y = 0; y < size.y; ++y)
+            for (uint32_t j = 0; j < kLatticeDirections; ++j) {
+                if (directions[j].offset.x > 0) model.cell({19, y, z}).blocked |= 1u << j;
+                if (directions[j].offset.x < 0) model.cell({20, y, z}).blocked |= 1u << j;
+            }
+    model.cell({2, 3, 4}).entering.power = 1;
+    GpuLattice lattice(model, size, 0);
+    const auto blocks = [&] {
+        const std::vector<uint32_t> lit = lattice.lit();
+        return std::count(lit.begin(), lit.end(), 1u);
+    };
+    lattice.step(2);
+    EXPECT_LE(blocks(), 8) << "of 48 blocks those within two cells of the lamp";
+    lattice.step(60);
+    for (int i = 0; i < 62; ++i) model.step();
+    const std::vector<double> powers = lattice.powers(0);
+    double dark = 0;
+    for (int i = 0; i < size.x * size.y * size.z; ++i) {
+        const ivec3 at(i % 48, i / 48 % 8, i / 384);
+        const auto sends = model.sends(at);
+        double expected = 0;
+        for (const double power : sends) expected += power;
+        EXPECT_NEAR(powers[size_t(i)], expected, 1e-5);
+        if (at.x >= 20) dark += powers[size_t(i)];
+    }
+    EXPECT_EQ(dark, 0);
+    EXPECT_EQ(blocks(), 3 * 2 * 4) << "the half before the wall";
 }
 
 /// The printed scheme in an endless lattice of one medium, λ and λs as in equation 3.

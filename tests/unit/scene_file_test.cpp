@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include <fmt/format.h>
+
 #include "core/image.h"
 #include "scene/scene_writer.h"
 #include "support/content.h"
@@ -50,6 +52,29 @@ TEST(SceneFile, CornellBoxLoads) {
         const dvec3 normal = dmat3(world[i]) * dvec3(0, 1, 0);
         EXPECT_GT(glm::dot(normal, dvec3(0, 1, 0) - dvec3(world[i][3])), 0) << scene.nodes[i].name;
     }
+}
+
+TEST(SceneFile, ContentIsWhatStandsInALandscape) {
+    const auto contentOf = [](const std::string& nodes) {
+        const auto loaded = loadText(R"({"tyndall": 1, "camera": "eye", "nodes": [)" + nodes +
+                                     R"({"name": "eye", "camera": {"type": "perspective"}}]})");
+        EXPECT_TRUE(loaded.ok()) << loaded.message();
+        return loaded->scene.contentBounds();
+    };
+    const auto box = [](const char* name, double x, double y, double z) {
+        return fmt::format(
+            R"({{"name": "{}", "primitive": {{"shape": "box", "size": [{}, {}, {}]}}, "translation": [0, {}, 0]}},)",
+            name, x, y, z, y / 2);
+    };
+    const std::string hut = box("hut", 4, 3, 5), stone = box("stone", 0.2, 0.1, 0.2);
+    const std::string meadow = box("meadow", 200, 0, 200), sea = box("sea", 300, 0, 300);
+    EXPECT_NEAR(contentOf(hut + meadow).extent().x, 4, 1e-6);
+    EXPECT_NEAR(contentOf(hut + sea + stone + meadow).extent().z, 5, 1e-6);
+    // A yard is not a landscape, nor is a room around a ball, nor one box alone.
+    EXPECT_NEAR(contentOf(hut + box("yard", 20, 0, 20)).extent().x, 20, 1e-6);
+    EXPECT_NEAR(contentOf(stone + box("room", 9, 6, 9)).extent().x, 9, 1e-6);
+    EXPECT_NEAR(contentOf(meadow).extent().x, 200, 1e-6);
+    EXPECT_TRUE(contentOf("").empty());
 }
 
 TEST(SceneFile, EveryKeyOfANodeArrives) {

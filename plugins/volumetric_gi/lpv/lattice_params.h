@@ -21,6 +21,12 @@ namespace tyndall::volumetric_gi {
     return params;
 }
 
+/// Blocks of cells, the workgroups of shaders that take one thread a cell.
+[[nodiscard]] inline ivec3 blocksOf(const ivec3& size) {
+    const ivec3 block(gpu::kLpvBlockX, gpu::kLpvBlockY, gpu::kLpvBlockZ);
+    return (size + block - 1) / block;
+}
+
 /// The printed scheme's transfer functions.
 [[nodiscard]] inline gpu::LpvTransfer latticeTransfer() {
     gpu::LpvTransfer transfer{};

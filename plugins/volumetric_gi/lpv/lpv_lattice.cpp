@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "framegraph/hash.h"
+#include "volumetric_gi/lpv/lattice_params.h"
 
 namespace tyndall::volumetric_gi {
 namespace {
@@ -138,7 +139,7 @@ namespace {
 constexpr int kStepsBetweenLooks = 8; // at the residual; even: light ends in the first buffer
 
 struct StepsData {
-    fg::BufferHandle medium, sources, links, flux[2], control, partials;
+    fg::BufferHandle medium, sources, links, flux[2], control, partials, lit;
     OuterBuffers outer;
     gpu::LpvParams params;
     gpu::LpvMeasureParams measure;
@@ -166,13 +167,16 @@ void recordFirstGuess(const StepsData& data, fg::PassContext& context) {
 }
 
 void recordStep(const StepsData& data, int step, fg::PassContext& context) {
+    gpu::LpvParams params = data.params;
+    params.grid.place.w = step < 2; // both buffers are written in full before blocks are left out
     context.compute("gi/lpv/propagate.comp")
-        .params(data.params)
+        .params(params)
         .bind("LpvMedium", data.medium)
         .bind("LpvSources", data.sources)
         .bind("LpvLinks", data.links)
         .bind("LpvFlux", data.flux[step % 2])
         .bind("LpvSent", data.flux[1 - step % 2])
+        .bind("LpvLit", data.lit)
         .dispatchIndirect(data.control, data.argumentsAt());
     context.barrier(fg::Access::StorageRead);
 }
@@ -202,6 +206,8 @@ void recordLook(const StepsData& data, bool ledger, fg::PassContext& context) {
 }
 
 void recordSteps(const StepsData& data, fg::PassContext& context) {
+    context.clearBuffer(data.lit, 0);
+    context.barrier(fg::Access::StorageWrite);
     if (data.restart) recordFirstGuess(data, context);
     for (int step = 0; step < data.request.most; ++step) {
         recordStep(data, step, context);
@@ -234,10 +240,12 @@ Flux addSteps(fg::FrameGraph& graph, const Lattice& lattice, const Lattice* oute
             data.control = builder.write(control);
             data.params = lattice.level.params;
             const ivec3 size(data.params.grid.size);
-            data.groups = (size + ivec3(7, 3, 1)) / ivec3(8, 4, 2); // local sizes of the shaders
+            data.groups = blocksOf(size);
             data.measure = {uint32_t(request.lattice),
                             uint32_t(data.groups.x * data.groups.y * data.groups.z),
                             float(kStepsBetweenLooks), request.tolerance};
+            data.lit = builder.create("gi.lpv.lit",
+                                      fg::BufferDesc{data.measure.groups * sizeof(uint32_t)});
             data.partials = builder.create("gi.lpv.partials",
                                            fg::BufferDesc{data.measure.groups * 7 * sizeof(float)});
             data.request = request;

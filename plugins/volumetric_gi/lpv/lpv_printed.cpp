@@ -81,7 +81,7 @@ const PrintedData& addPrintedSteps(fg::FrameGraph& graph, const Lattice& lattice
             data.control = builder.write(control);
             data.params = lattice.level.params;
             data.transfer = latticeTransfer();
-            data.groups = (ivec3(data.params.grid.size) + ivec3(7, 3, 1)) / ivec3(8, 4, 2);
+            data.groups = blocksOf(ivec3(data.params.grid.size));
             data.partials = builder.create(
                 "gi.lpv.partials",
                 fg::BufferDesc{uint64_t(data.groups.x * data.groups.y * data.groups.z) * 7 *

@@ -2,7 +2,7 @@
 #include "gi/lpv/gather.glsl" // LpvFlux: before the step
 #include "gi/lpv/workgroup_sums.glsl"
 
-layout(local_size_x = 8, local_size_y = 4, local_size_z = 2) in;
+layout(local_size_x = kLpvBlockX, local_size_y = kLpvBlockY, local_size_z = kLpvBlockZ) in;
 
 layout(std430) readonly buffer LpvMedium { vec4 medium[]; };
 layout(std430) readonly buffer LpvSent { float sent[]; }; // after the step

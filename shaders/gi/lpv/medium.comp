@@ -8,7 +8,7 @@
 #include "media/density.glsl"
 #endif
 
-layout(local_size_x = 8, local_size_y = 4, local_size_z = 2) in;
+layout(local_size_x = kLpvBlockX, local_size_y = kLpvBlockY, local_size_z = kLpvBlockZ) in;
 
 layout(std430) writeonly buffer LpvMedium { vec4 medium[]; };
 

@@ -4,7 +4,7 @@
 #define LEDGER 1
 #include "gi/lpv/workgroup_sums.glsl"
 
-layout(local_size_x = 8, local_size_y = 4, local_size_z = 2) in;
+layout(local_size_x = kLpvBlockX, local_size_y = kLpvBlockY, local_size_z = kLpvBlockZ) in;
 
 layout(std430) readonly buffer LpvNext { vec4 next[]; }; // after the step
 

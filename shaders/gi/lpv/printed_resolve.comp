@@ -2,7 +2,7 @@
 // neighbours.
 #include "gi/lpv/printed.glsl" // LpvRadiance: the sum over all steps
 
-layout(local_size_x = 8, local_size_y = 4, local_size_z = 2) in;
+layout(local_size_x = kLpvBlockX, local_size_y = kLpvBlockY, local_size_z = kLpvBlockZ) in;
 
 layout(std430) writeonly buffer LpvSides { uint sides[]; };
 layout(rgba32f) writeonly uniform image3D redLight;

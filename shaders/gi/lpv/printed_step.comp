@@ -1,7 +1,7 @@
 // One step of the printed scheme, and the sum over all steps. Blockers are the shut ways of the lattice: they absorb.
 #include "gi/lpv/printed.glsl"
 
-layout(local_size_x = 8, local_size_y = 4, local_size_z = 2) in;
+layout(local_size_x = kLpvBlockX, local_size_y = kLpvBlockY, local_size_z = kLpvBlockZ) in;
 
 layout(std430) writeonly buffer LpvNext { vec4 next[]; };
 layout(std430) buffer LpvSum { vec4 sum[]; };

@@ -3,7 +3,7 @@
 #include "gi/lpv/lattice.glsl"
 #include "gi/lpv/outer.glsl"
 
-layout(local_size_x = 8, local_size_y = 4, local_size_z = 2) in;
+layout(local_size_x = kLpvBlockX, local_size_y = kLpvBlockY, local_size_z = kLpvBlockZ) in;
 
 layout(std430) writeonly buffer LpvFlux { float flux[]; };
 

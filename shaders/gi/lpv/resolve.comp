@@ -2,7 +2,7 @@
 // goes what tells on which side of surfaces a point lies: look-ups need no more.
 #include "gi/lpv/gather.glsl"
 
-layout(local_size_x = 8, local_size_y = 4, local_size_z = 2) in;
+layout(local_size_x = kLpvBlockX, local_size_y = kLpvBlockY, local_size_z = kLpvBlockZ) in;
 
 layout(std430) readonly buffer LpvMedium { vec4 medium[]; };
 // xyz: vector flux, w: fluence, of a channel
