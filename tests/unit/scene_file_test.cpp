@@ -67,11 +67,11 @@ TEST(SceneFile, ContentIsWhatStandsInALandscape) {
             name, x, y, z, y / 2);
     };
     const std::string hut = box("hut", 4, 3, 5), stone = box("stone", 0.2, 0.1, 0.2);
-    const std::string meadow = box("meadow", 200, 0, 200), sea = box("sea", 300, 0, 300);
+    const std::string meadow = box("meadow", 200, 0.001, 200), sea = box("sea", 300, 0.001, 300);
     EXPECT_NEAR(contentOf(hut + meadow).extent().x, 4, 1e-6);
     EXPECT_NEAR(contentOf(hut + sea + stone + meadow).extent().z, 5, 1e-6);
     // A yard is not a landscape, nor is a room around a ball, nor one box alone.
-    EXPECT_NEAR(contentOf(hut + box("yard", 20, 0, 20)).extent().x, 20, 1e-6);
+    EXPECT_NEAR(contentOf(hut + box("yard", 20, 0.001, 20)).extent().x, 20, 1e-6);
     EXPECT_NEAR(contentOf(stone + box("room", 9, 6, 9)).extent().x, 9, 1e-6);
     EXPECT_NEAR(contentOf(meadow).extent().x, 200, 1e-6);
     EXPECT_TRUE(contentOf("").empty());
