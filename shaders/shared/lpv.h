@@ -37,10 +37,9 @@ TYNDALL_CONST uint kLpvBlocked = 0u;     // bit j: a surface stands in the way t
 TYNDALL_CONST uint kLpvNearest = 1u;     // 6, of the first surface towards +x -x +y -y +z -z before the next cell: 4096 less its distance in
                                          // 4095ths of a cell << 20, and its normal, octahedral, 10 bits each; 0: none
 TYNDALL_CONST uint kLpvSidePlanes = 7u;  // those before: what tells on which side a point lies
-TYNDALL_CONST uint kLpvReflectance = 7u; // 3, of red, green, blue: sum over the surfaces, in units of 1/kLpvReflectanceUnit
-TYNDALL_CONST uint kLpvSurfaces = 10u;   // how many crossings are in that sum
-TYNDALL_CONST uint kLpvLinkPlanes = 11u;
-TYNDALL_CONST uint kLpvReflectanceUnit = 1024u;
+TYNDALL_CONST uint kLpvSurface = 7u;     // 26, of the first surface on the way in each direction: reflectance, 8 bits a channel, red the lowest, and above
+                                         // them 255 less its distance in 255ths of the way, at least 1; 0: none
+TYNDALL_CONST uint kLpvLinkPlanes = 33u;
 
 struct LpvDirection {
     vec4 unit;    // w: weight in a mean over the sphere

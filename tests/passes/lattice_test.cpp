@@ -47,10 +47,9 @@ public:
             sources[gpu::kLpvEmission * cells_ + i] =
                 float(cell.emission) * vec4(kShares[0], kShares[1], kShares[2], 0);
             links[gpu::kLpvBlocked * cells_ + i] = cell.blocked;
-            links[gpu::kLpvSurfaces * cells_ + i] = 2;
-            for (uint32_t c = 0; c < 3; ++c)
-                links[(gpu::kLpvReflectance + c) * cells_ + i] =
-                    uint32_t(std::lround(2 * cell.reflectance * gpu::kLpvReflectanceUnit));
+            for (uint32_t j = 0; j < gpu::kLpvDirections; ++j)
+                links[(gpu::kLpvSurface + j) * cells_ + i] =
+                    0x010101u * uint32_t(std::lround(255 * cell.reflectance[j]));
         }
         medium_ = gl::Buffer("medium", std::as_bytes(std::span(medium)));
         sources_ = gl::Buffer("sources", std::as_bytes(std::span(sources)));
@@ -132,7 +131,8 @@ LatticeModel randomLattice(const ivec3& size, bool repeats, double densest, doub
         cell.entering.power = std::pow(10, 4 * unit(random) - 2);
         const dvec3 direction(unit(random) - 0.5, unit(random) - 0.5, unit(random) - 0.5);
         cell.entering.moment = glm::normalize(direction) * cell.entering.power * unit(random);
-        cell.reflectance = std::round(unit(random) * 1024) / 1024;
+        for (double& reflectance : cell.reflectance)
+            reflectance = std::round(unit(random) * 255) / 255;
         for (uint32_t j = 0; j < 13; ++j) { // each way once, and its other end with it
             const ivec3 to = at + directions[j].offset;
             if (unit(random) >= blocked || glm::any(glm::lessThan(to, ivec3(0))) ||

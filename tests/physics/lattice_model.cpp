@@ -116,7 +116,7 @@ LatticeBalance LatticeModel::step() {
             const auto& d = latticeDirections()[j];
             ivec3 target;
             if (cell.blocked >> j & 1) {
-                const double reflected = cell.reflectance * sent.power[j];
+                const double reflected = cell.reflectance[j] * sent.power[j];
                 balance.blocked += sent.power[j] - reflected;
                 own.power += reflected;
                 own.moment += reflected * (2.0 / 3) * normal; // Lambert's mean direction

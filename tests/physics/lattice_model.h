@@ -23,7 +23,7 @@ struct LatticeCell {
     double albedo = 0; // transport scattering over transport extinction
     uint32_t blocked =
         0; // bit j: a surface stands between this cell and its neighbour in direction j
-    double reflectance = 0; // of what stands there
+    std::array<double, kLatticeDirections> reflectance{}; // of what stands there
     // Sources, a step: power scattered or emitted inside the cell to all sides, and light that enters it.
     double emission = 0;
     Arrival entering;

@@ -135,7 +135,7 @@ TEST(LatticeModel, ItsBalanceIsClosed) {
     for (int i = 0; i < 60; ++i) {
         LatticeCell& cell = lattice.cell({i % 5, i / 5 % 4, i / 20});
         cell.blocked = random() & random() & 0x3ffffffu;
-        cell.reflectance = 0.5;
+        cell.reflectance.fill(0.5);
         cell.emission = 1.0 / (1 + i);
         cell.entering = {0.3, {0.1, 0.2, -0.1}};
     }

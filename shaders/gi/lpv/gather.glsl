@@ -24,11 +24,8 @@ void addLight(inout Arrival a, vec3 power, vec3 direction) {
     a.blue += power.b * vec4(direction, 1.0);
 }
 
-/// Mean of the surfaces around a cell.
-vec3 reflectance(uint cell, uint cells) {
-    vec3 sum = vec3(links[kLpvReflectance * cells + cell], links[(kLpvReflectance + 1u) * cells + cell], links[(kLpvReflectance + 2u) * cells + cell]);
-    return sum / float(max(links[kLpvSurfaces * cells + cell], 1u) * kLpvReflectanceUnit);
-}
+/// Of the first surface on a cell's way in direction j.
+vec3 reflectance(uint cell, uint cells, uint j) { return unpackUnorm4x8(links[(kLpvSurface + j) * cells + cell]).rgb; }
 
 /// What is sent out from within a cell (`emission`, and what is scattered of light whose lobe has `classes`), and all that collides in it
 /// (LatticeModel::send).
@@ -50,12 +47,12 @@ Arrival gatherLight(ivec3 at, uint cells) {
     Arrival a = Arrival(sources[(kLpvEntering + 0u) * cells + self], sources[(kLpvEntering + 1u) * cells + self],
                         sources[(kLpvEntering + 2u) * cells + self]);
     uint blocked = links[kLpvBlocked * cells + self];
-    vec3 back = vec3(0.0);   // what the cell sent towards surfaces around it
+    vec3 back = vec3(0.0);   // what surfaces around the cell send back of what it sent
     vec3 normal = vec3(0.0); // of these, from the directions that they block
     for (uint j = 0u; j < kLpvDirections; ++j) {
         vec4 d = params.directions[j].unit;
         if ((blocked & (1u << j)) != 0u) {
-            back += fluxOf(self, cells, j);
+            back += fluxOf(self, cells, j) * reflectance(self, cells, j);
             normal -= d.w * d.xyz;
         }
         // Direction 25 - j is the opposite one: what stands between two cells blocks both ways.
@@ -66,7 +63,7 @@ Arrival gatherLight(ivec3 at, uint cells) {
     if (blocked != 0u) {
         float size = length(normal);
         // Lambert's mean direction; none where surfaces on opposite sides cancel.
-        addLight(a, back * reflectance(self, cells), size > 1e-6 ? normal * (2.0 / 3.0 / size) : vec3(0.0));
+        addLight(a, back, size > 1e-6 ? normal * (2.0 / 3.0 / size) : vec3(0.0));
     }
     return a;
 }

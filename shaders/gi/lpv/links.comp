@@ -40,10 +40,10 @@ float crossing(vec3 p, vec3 way, vec3 a, vec3 ab, vec3 ac) {
     return inside ? clamp(t, 0.0, 1.0) : -1.0;
 }
 
-void addSurface(uint cell, uint cells, vec3 colour) {
-    uvec3 units = uvec3(clamp(colour, 0.0, 1.0) * float(kLpvReflectanceUnit) + 0.5);
-    for (uint c = 0u; c < 3u; ++c) atomicAdd(links[(kLpvReflectance + c) * cells + cell], units[c]);
-    atomicAdd(links[kLpvSurfaces * cells + cell], 1u);
+/// Shuts the way in direction j at `t` of it; the first surface's colour stays.
+void shut(uint cell, uint cells, uint j, float t, vec3 colour) {
+    atomicOr(links[kLpvBlocked * cells + cell], 1u << j);
+    atomicMax(links[(kLpvSurface + j) * cells + cell], packUnorm4x8(vec4(colour, max(1.0 - t, 1.0 / 255.0))));
 }
 
 void main() {
@@ -81,14 +81,12 @@ void main() {
             int axis = params.directions[j].offset.w != 0 ? -1 : (offset.x != 0 ? 0 : (offset.y != 0 ? 1 : 2));
             uint units = uint(t * 4095.0 + 0.5);
             if (hasSelf) {
-                atomicOr(links[kLpvBlocked * cells + self], 1u << j);
-                addSurface(self, cells, colour);
+                shut(self, cells, j, t, colour);
                 if (axis >= 0) atomicMax(links[(kLpvNearest + 2u * uint(axis)) * cells + self], (4096u - max(units, 1u)) << 20u | packedNormal);
             }
             if (!isInside(to)) continue;
             uint other = cellIndex(to);
-            atomicOr(links[kLpvBlocked * cells + other], 1u << (25u - j));
-            addSurface(other, cells, colour);
+            shut(other, cells, 25u - j, 1.0 - t, colour);
             if (axis >= 0) atomicMax(links[(kLpvNearest + 2u * uint(axis) + 1u) * cells + other], (4096u - max(4095u - units, 1u)) << 20u | packedNormal);
         }
     }

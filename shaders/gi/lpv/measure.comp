@@ -25,12 +25,11 @@ vec4 ledger(ivec3 at, uint cells) {
         result.y += (1.0 - albedo[c]) * collided;
     }
     uint blocked = links[kLpvBlocked * cells + self];
-    vec3 kept = 1.0 - reflectance(self, cells);
     for (uint j = 0u; j < kLpvDirections; ++j) {
         vec3 power = fluxOf(self, cells, j);
         ivec3 to = at + params.directions[j].offset.xyz;
         if ((blocked & (1u << j)) != 0u)
-            result.w += dot(kept, power);
+            result.w += dot(1.0 - reflectance(self, cells, j), power);
         else if (!wrapCell(to))
             result.z += dot(vec3(1.0), power);
     }

@@ -52,21 +52,22 @@ vec3 valueOf(ivec3 cell, vec3 within, int axis) {
     if (show.what == kLpvShowDirections) return glyph(cell, within, axis);
     if (show.what == kLpvShowMedium) return show.white * heat(0.5 * maximumOf(medium[kLpvDepth * cells + self].rgb));
     if (show.what == kLpvShowSurfaces) {
-        int shut = bitCount(links[kLpvBlocked * cells + self]);
-        return show.white * (shut == 0 ? vec3(0.0) : mix(vec3(0.02), reflectance(self, cells), float(shut) / 26.0));
+        uint blocked = links[kLpvBlocked * cells + self];
+        vec3 sum = vec3(0.0);
+        for (uint j = 0u; j < kLpvDirections; ++j) sum += (blocked & (1u << j)) != 0u ? 0.02 + reflectance(self, cells, j) : vec3(0.0);
+        return show.white * sum / float(kLpvDirections);
     }
     float before = 0.0;
     float after = 0.0;
     float change = 0.0;
     float lost = 0.0;
-    vec3 kept = 1.0 - reflectance(self, cells);
     for (uint j = 0u; j < kLpvDirections; ++j) {
         vec3 old = fluxOf(self, cells, j);
         vec3 now = vec3(sent[(3u * j) * cells + self], sent[(3u * j + 1u) * cells + self], sent[(3u * j + 2u) * cells + self]);
         before += dot(vec3(1.0), old);
         after += dot(vec3(1.0), now);
         change += dot(vec3(1.0), abs(now - old));
-        if ((links[kLpvBlocked * cells + self] & (1u << j)) != 0u) lost += dot(kept, now);
+        if ((links[kLpvBlocked * cells + self] & (1u << j)) != 0u) lost += dot(1.0 - reflectance(self, cells, j), now);
     }
     if (!(after > 0.0)) return vec3(0.0);
     // From a millionth to a tenth, by powers of ten.
