@@ -17,8 +17,9 @@ const SettingDesc kLpvSettings[] = {
     TYNDALL_FLOAT(
         LpvSettings, extent, "gi.lpv.extent", "Extent of the finest", "m", 0.0f, 1e6f, 0.0f,
         "Longest side of the finest lattice; shorter than the scene it follows the camera. 0: from the scene."),
-    TYNDALL_INT(LpvSettings, steps, "gi.lpv.steps", "Steps a frame", "", 2, 4096, 96,
-                "Steps that light is propagated in each frame, on from the frame before."),
+    TYNDALL_INT(
+        LpvSettings, steps, "gi.lpv.steps", "Steps a frame", "", 2, 4096, 256,
+        "Steps in a frame at most: they end where light is settled, and go on in the next frame where it is not."),
     TYNDALL_FLOAT(
         LpvSettings, tolerance, "gi.lpv.tolerance", "Settled below", "", 0.0f, 1.0f, 0.002f,
         "Steps end when what is left to come, over what there is, is estimated to be less."),
@@ -47,16 +48,18 @@ const SettingDesc kLpvSettings[] = {
 };
 
 constexpr PresetEntry kLpvPresets[] = {
-    {Quality::Low, "gi.lpv.resolution", "16"},    {Quality::Low, "gi.lpv.steps", "48"},
-    {Quality::Low, "gi.lpv.cascades", "2"},       {Quality::Medium, "gi.lpv.cascades", "3"},
-    {Quality::High, "gi.lpv.cascades", "4"},      {Quality::Ultra, "gi.lpv.cascades", "4"},
+    {Quality::Low, "gi.lpv.resolution", "16"},    {Quality::Low, "gi.lpv.steps", "96"},
+    {Quality::Low, "gi.lpv.cascades", "2"},       {Quality::Low, "gi.lpv.tolerance", "0.01"},
     {Quality::Low, "gi.lpv.rsmSize", "64"},       {Quality::Low, "gi.lpv.rsmRectPoints", "1"},
-    {Quality::Medium, "gi.lpv.resolution", "24"}, {Quality::Medium, "gi.lpv.steps", "64"},
-    {Quality::Medium, "gi.lpv.rsmSize", "96"},    {Quality::Medium, "gi.lpv.rsmRectPoints", "2"},
-    {Quality::High, "gi.lpv.resolution", "32"},   {Quality::High, "gi.lpv.steps", "96"},
+    {Quality::Medium, "gi.lpv.resolution", "24"}, {Quality::Medium, "gi.lpv.steps", "128"},
+    {Quality::Medium, "gi.lpv.cascades", "3"},    {Quality::Medium, "gi.lpv.tolerance", "0.005"},
+    {Quality::Medium, "gi.lpv.rsmSize", "96"},    {Quality::Medium, "gi.lpv.rsmRectPoints", "4"},
+    {Quality::High, "gi.lpv.resolution", "32"},   {Quality::High, "gi.lpv.steps", "256"},
+    {Quality::High, "gi.lpv.cascades", "4"},      {Quality::High, "gi.lpv.tolerance", "0.002"},
     {Quality::High, "gi.lpv.rsmSize", "128"},     {Quality::High, "gi.lpv.rsmRectPoints", "4"},
-    {Quality::Ultra, "gi.lpv.resolution", "64"},  {Quality::Ultra, "gi.lpv.steps", "192"},
-    {Quality::Ultra, "gi.lpv.rsmSize", "256"},    {Quality::Ultra, "gi.lpv.rsmRectPoints", "8"},
+    {Quality::Ultra, "gi.lpv.resolution", "64"},  {Quality::Ultra, "gi.lpv.steps", "512"},
+    {Quality::Ultra, "gi.lpv.cascades", "4"},     {Quality::Ultra, "gi.lpv.tolerance", "0.001"},
+    {Quality::Ultra, "gi.lpv.rsmSize", "256"},    {Quality::Ultra, "gi.lpv.rsmRectPoints", "9"},
 };
 
 } // namespace

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/low_discrepancy.h"
-
 namespace tyndall::volumetric_gi {
 namespace {
 
@@ -96,12 +94,17 @@ void addLight(Planner& planner, uint32_t index, const gpu::LightData& light, int
     const dvec3 position = rgb(light.position), direction = rgb(light.direction);
     if (light.type == gpu::kLightDirectional) return planner.addParallel(index, direction);
     if (light.type == gpu::kLightRect) {
-        for (int i = 0; i < rectPoints; ++i) {
-            const dvec2 u = rectPoints == 1 ? dvec2(0.5) : lowDiscrepancyPoint(uint32_t(i), 0);
-            planner.addCube(index,
-                            position + (2 * u.x - 1) * rgb(light.axisX) +
-                                (2 * u.y - 1) * rgb(light.axisY),
-                            direction, 0, 1.0 / rectPoints);
+        // Middles of equal rows, and of equal parts of each: the points' mean is the rect's middle.
+        const int rows = std::max(int(std::lround(std::sqrt(rectPoints))), 1);
+        for (int row = 0; row < rows; ++row) {
+            const int columns = rectPoints * (row + 1) / rows - rectPoints * row / rows;
+            for (int column = 0; column < columns; ++column) {
+                const dvec2 u((column + 0.5) / columns, (row + 0.5) / rows);
+                planner.addCube(index,
+                                position + (2 * u.x - 1) * rgb(light.axisX) +
+                                    (2 * u.y - 1) * rgb(light.axisY),
+                                direction, 0, 1.0 / (rows * columns));
+            }
         }
         return;
     }
