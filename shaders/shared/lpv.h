@@ -8,6 +8,10 @@ TYNDALL_SHARED_BEGIN
 TYNDALL_CONST uint kLpvDirections = 26u; // x fastest, from -1 to 1
 TYNDALL_CONST uint kLpvClasses = 3u;     // of directions: across a face, an edge, a corner
 
+// Of the light that comes to a cell from its neighbours this part joins the lobe of two bands that the cell sends on; the rest goes straight
+// on. 1 would forget at each cell from how many sides light came; 0 would keep it to 26 rays (docs/techniques/lpv.md).
+TYNDALL_CONST float kLpvMixed = 0.65;
+
 // LpvFlux, floats: power that a cell sends in direction j in a step, of channel c: plane 3 j + c.
 TYNDALL_CONST uint kLpvFluxPlanes = 78u;
 

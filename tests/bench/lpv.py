@@ -21,6 +21,7 @@ from tables import ROOT, commit_date, machine, table  # noqa: E402
 
 SURFACES, MEDIA = "LSSE,LVSE,LXSSE,LXVSE", "LSVE,LVVE,LXSVE,LXVVE"
 SIZE = "64x36"
+FRAMES = 32  # averaged: a pixel of one frame has one ray, and that of a curtain with dots says little about the curtain
 
 
 def load(path):
@@ -96,12 +97,14 @@ class Bench:
         return path
 
     def capture(self, scene, label, *options):
-        """The picture, and the report of a frame after the first in which all light is found anew."""
-        path = scene.with_name(scene.name.replace(".scene.json", f".{label}.exr"))
-        report = path.with_suffix(".json")
-        if not path.exists() or not report.exists():
-            self.run("capture", scene, "-o", path, "--size", SIZE, "--aov", "terms", "--frames", 2, "--set", "gi.lpv.keep=false",
-                     "--report", report, "--quiet", *options)
+        """A picture, and the report of another's second frame, in which all light is found anew."""
+        path = scene.with_name(scene.name.replace(".scene.json", f".{label}.average.exr"))
+        if not path.exists():
+            self.run("capture", scene, "-o", path, "--size", SIZE, "--aov", "terms", "--converge", "--frames", FRAMES, "--quiet", *options)
+        report = scene.with_name(scene.name.replace(".scene.json", f".{label}.json"))
+        if not report.exists():
+            self.run("capture", scene, "-o", report.with_suffix(".png"), "--size", SIZE, "--frames", 2, "--set", "gi.lpv.keep=false", "--report", report,
+                     "--quiet", *options)
         return path, json.loads(report.read_text())
 
     def compare(self, picture, reference, terms=None):
@@ -196,10 +199,9 @@ Made by `tests/bench/lpv.py` from a release build of {commit_date()}, on {machin
 What the columns mean and why the numbers are what they are: [techniques/lpv.md](techniques/lpv.md).
 
 ## Error and time by scene
-{SIZE} pixels, against the reference ({arguments.spp} samples a pixel, half as many for the smoke and a quarter for Sponza). relmse and energy are those of [compare.md](compare.md):
+{SIZE} pixels, averages of {FRAMES} frames, against the reference ({arguments.spp} samples a pixel, half as many for the smoke and a quarter for Sponza). relmse and energy are those of [compare.md](compare.md):
 of the indirect terms on surfaces, of those in media, and of the whole picture. "none" has direct light alone, "octaves" is the baseline, "paper" the printed scheme with eight steps.
-Milliseconds are those of a frame in which all light is found anew (`gi.lpv.keep=false`), but not media and blockers, which are kept while nothing moves. A picture of this size has the
-lamp of the box in a few pixels, each with one ray: its energy says less than that of the layers.
+Milliseconds are those of a frame in which all light is found anew (`gi.lpv.keep=false`), but not media and blockers, which are kept while nothing moves.
 
 {errors}
 ## The paper's configuration

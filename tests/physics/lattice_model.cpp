@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/check.h"
+#include "shared/lpv.h"
 
 namespace tyndall::test {
 namespace {
@@ -18,7 +19,7 @@ double meanTransmittance(double x) { return x < 1e-8 ? 1 - 0.5 * x : -std::expm1
 
 LatticeModel::LatticeModel(const ivec3& size, const std::array<bool, 3>& repeats)
     : size_(size), repeats_(repeats), cells_(size_t(size.x) * size_t(size.y) * size_t(size.z)),
-      state_(cells_.size()) {}
+      state_(cells_.size()), along_(cells_.size()) {}
 
 size_t LatticeModel::indexOf(const ivec3& at) const {
     CHECK(at.x >= 0 && at.y >= 0 && at.z >= 0 && at.x < size_.x && at.y < size_.y &&
@@ -73,9 +74,23 @@ std::array<double, kLatticeDirections> LatticeModel::lobe(const Arrival& state) 
     return result;
 }
 
-LatticeModel::Sent LatticeModel::send(const LatticeCell& cell, const Arrival& state) const {
+std::array<double, kLatticeDirections> LatticeModel::passing(size_t cell) const {
+    const double straight = 1 - double(gpu::kLpvMixed);
+    Arrival joins = state_[cell];
+    for (size_t j = 0; j < kLatticeDirections; ++j) {
+        joins.power -= straight * along_[cell][j];
+        joins.moment -= straight * along_[cell][j] * latticeDirections()[j].unit;
+    }
+    joins.power = std::max(joins.power, 0.0); // rounding
+    std::array<double, kLatticeDirections> result = lobe(joins);
+    for (size_t j = 0; j < kLatticeDirections; ++j) result[j] += straight * along_[cell][j];
+    return result;
+}
+
+LatticeModel::Sent LatticeModel::send(size_t index) const {
+    const LatticeCell& cell = cells_[index];
     Sent sent;
-    const std::array<double, kLatticeDirections> passing = lobe(state);
+    const std::array<double, kLatticeDirections> passing = this->passing(index);
     double escape = 0;
     for (size_t j = 0; j < passing.size(); ++j) {
         const auto& d = latticeDirections()[j];
@@ -98,9 +113,10 @@ LatticeModel::Sent LatticeModel::send(const LatticeCell& cell, const Arrival& st
 LatticeBalance LatticeModel::step() {
     LatticeBalance balance;
     std::vector<Arrival> next(state_.size());
+    std::vector<std::array<double, kLatticeDirections>> along(state_.size());
     forEachCell([&](const ivec3& at) {
         const LatticeCell& cell = cells_[indexOf(at)];
-        const Sent sent = send(cell, state_[indexOf(at)]);
+        const Sent sent = send(indexOf(at));
         balance.injected += cell.emission + cell.entering.power;
         balance.absorbed += (1 - cell.albedo) * sent.collided;
         // The normal of what stands around the cell, from the directions that it blocks.
@@ -123,12 +139,14 @@ LatticeBalance LatticeModel::step() {
             } else if (neighbour(at, d.offset, target)) {
                 next[indexOf(target)].power += sent.power[j];
                 next[indexOf(target)].moment += sent.power[j] * d.unit;
+                along[indexOf(target)][j] += sent.power[j];
             } else {
                 balance.escaped += sent.power[j];
             }
         }
     });
     state_ = std::move(next);
+    along_ = std::move(along);
     for (const Arrival& a : state_) balance.stored += a.power;
     return balance;
 }
@@ -149,8 +167,8 @@ std::vector<Arrival> LatticeModel::tracks() const {
     std::vector<Arrival> result(state_.size());
     for (size_t c = 0; c < state_.size(); ++c) {
         const LatticeCell& cell = cells_[c];
-        const std::array<double, kLatticeDirections> passing = lobe(state_[c]);
-        const double emitted = send(cell, state_[c]).emitted;
+        const std::array<double, kLatticeDirections> passing = this->passing(c);
+        const double emitted = send(c).emitted;
         for (size_t j = 0; j < passing.size(); ++j) {
             const auto& d = latticeDirections()[j];
             const double depth = cell.depth * d.length, mean = meanTransmittance(depth);
@@ -165,14 +183,14 @@ std::vector<Arrival> LatticeModel::tracks() const {
 }
 
 std::array<double, kLatticeDirections> LatticeModel::sends(const ivec3& at) const {
-    return send(cells_[indexOf(at)], state_[indexOf(at)]).power;
+    return send(indexOf(at)).power;
 }
 
 std::array<double, 2> LatticeModel::leaving(int axis) const {
     std::array<double, 2> result{};
     forEachCell([&](const ivec3& at) {
         if (at[axis] != 0 && at[axis] != size_[axis] - 1) return;
-        const Sent sent = send(cells_[indexOf(at)], state_[indexOf(at)]);
+        const Sent sent = send(indexOf(at));
         for (size_t j = 0; j < sent.power.size(); ++j) {
             const int to = at[axis] + latticeDirections()[j].offset[axis];
             if (to < 0) result[0] += sent.power[j];

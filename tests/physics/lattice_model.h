@@ -65,7 +65,10 @@ private:
         std::array<double, kLatticeDirections> power{};
         double collided = 0, emitted = 0;
     };
-    [[nodiscard]] Sent send(const LatticeCell& cell, const Arrival& state) const;
+    /// What the cell sends on of its state, in each direction, before any of it collides: of what came along that direction a part goes
+    /// straight on, the rest of the state leaves as a lobe.
+    [[nodiscard]] std::array<double, kLatticeDirections> passing(size_t cell) const;
+    [[nodiscard]] Sent send(size_t cell) const;
     [[nodiscard]] bool neighbour(const ivec3& at, const ivec3& offset, ivec3& result) const;
     template <typename Visit> void forEachCell(Visit&& visit) const;
 
@@ -73,6 +76,8 @@ private:
     std::array<bool, 3> repeats_;
     std::vector<LatticeCell> cells_;
     std::vector<Arrival> state_;
+    std::vector<std::array<double, kLatticeDirections>>
+        along_; // of the state's power, what came along each direction
 };
 
 /// Billeter, Sintorn and Assarsson 2012, equation 3, as printed: no blockers, one channel, coefficients in two bands of harmonics.

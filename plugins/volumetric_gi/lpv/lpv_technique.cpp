@@ -58,8 +58,15 @@ uint64_t LpvTechnique::sourceKey(const plugin::FrameInputs& inputs, uint64_t pla
           uint64_t(settings_.reflected), uint64_t(settings_.scattered),
           uint64_t(std::bit_cast<uint32_t>(settings_.tolerance))})
         key = fg::mixHash(key, version);
-    const char* bytes = reinterpret_cast<const char*>(inputs.lightData);
-    return fg::hashName({bytes, inputs.lights.lightCount * sizeof(gpu::LightData)}, key);
+    for (uint32_t i = 0; i < inputs.lights.lightCount; ++i) {
+        // But for what the direct passes alone look at, which changes from frame to frame: a frame's own point on the light, and
+        // where its shadows and optical depths lie.
+        gpu::LightData light = inputs.lightData[i];
+        light.samplePoint = vec4(0);
+        light.shadowIndex = light.opticalDepthIndex = 0;
+        key = fg::hashName({reinterpret_cast<const char*>(&light), sizeof(light)}, key);
+    }
+    return key;
 }
 
 void LpvTechnique::addSources(fg::FrameGraph& graph, const plugin::FrameInputs& inputs,

@@ -7,11 +7,12 @@ layout(std430) readonly buffer LpvSources { vec4 sources[]; };
 layout(std430) readonly buffer LpvLinks { uint links[]; };
 layout(std430) readonly buffer LpvFlux { float flux[]; };
 
-/// Light of three channels; xyz: first moment (power times mean direction), w: power.
+/// Light of three channels.
 struct Arrival {
-    vec4 red;
+    vec4 red; // of what joins the cell's lobe; xyz: first moment (power times mean direction), w: power
     vec4 green;
     vec4 blue;
+    vec3 straight[kLpvClasses]; // power of what goes straight on, in each class of directions
 };
 
 vec3 fluxOf(uint cell, uint cells, uint j) {
@@ -27,7 +28,7 @@ void addLight(inout Arrival a, vec3 power, vec3 direction) {
 /// Of the first surface on a cell's way in direction j.
 vec3 reflectance(uint cell, uint cells, uint j) { return unpackUnorm4x8(links[(kLpvSurface + j) * cells + cell]).rgb; }
 
-/// What is sent out from within a cell (`emission`, and what is scattered of light whose lobe has `classes`), and all that collides in it
+/// What is sent out from within a cell (`emission`, and what is scattered of light that has `classes`), and all that collides in it
 /// (LatticeModel::send).
 float emittedInside(vec3 classes, float depth, float albedo, float emission, out float collided) {
     collided = 0.0;
@@ -42,10 +43,27 @@ float emittedInside(vec3 classes, float depth, float albedo, float emission, out
     return emitted;
 }
 
+/// All that arrives.
+vec3 arrivingPower(Arrival a) { return vec3(a.red.w, a.green.w, a.blue.w) + a.straight[0] + a.straight[1] + a.straight[2]; }
+
+/// Power that comes to a cell along direction j from its neighbour. `blocked`: the cell's shut ways.
+vec3 powerAlong(ivec3 at, uint cells, uint blocked, uint j) {
+    // Direction 25 - j is the opposite one: what stands between two cells blocks both ways.
+    ivec3 from = at - params.directions[j].offset.xyz;
+    if ((blocked & (1u << (25u - j))) != 0u || !wrapCell(from)) return vec3(0.0);
+    return fluxOf(cellIndex(from), cells, j);
+}
+
+/// The part of it that goes straight on.
+vec3 straightPower(ivec3 at, uint cells, uint blocked, uint j) { return (1.0 - kLpvMixed) * powerAlong(at, cells, blocked, j); }
+
+/// The part of a channel's arrivals that goes straight on, in each class.
+vec3 straightClasses(Arrival a, uint channel) { return vec3(a.straight[0][channel], a.straight[1][channel], a.straight[2][channel]); }
+
 Arrival gatherLight(ivec3 at, uint cells) {
     uint self = cellIndex(at);
     Arrival a = Arrival(sources[(kLpvEntering + 0u) * cells + self], sources[(kLpvEntering + 1u) * cells + self],
-                        sources[(kLpvEntering + 2u) * cells + self]);
+                        sources[(kLpvEntering + 2u) * cells + self], vec3[kLpvClasses](vec3(0.0), vec3(0.0), vec3(0.0)));
     uint blocked = links[kLpvBlocked * cells + self];
     vec3 back = vec3(0.0);   // what surfaces around the cell send back of what it sent
     vec3 normal = vec3(0.0); // of these, from the directions that they block
@@ -55,10 +73,9 @@ Arrival gatherLight(ivec3 at, uint cells) {
             back += fluxOf(self, cells, j) * reflectance(self, cells, j);
             normal -= d.w * d.xyz;
         }
-        // Direction 25 - j is the opposite one: what stands between two cells blocks both ways.
-        ivec3 from = at - params.directions[j].offset.xyz;
-        if ((blocked & (1u << (25u - j))) != 0u || !wrapCell(from)) continue;
-        addLight(a, fluxOf(cellIndex(from), cells, j), d.xyz);
+        vec3 power = powerAlong(at, cells, blocked, j);
+        addLight(a, kLpvMixed * power, d.xyz);
+        a.straight[params.directions[j].offset.w] += (1.0 - kLpvMixed) * power;
     }
     if (blocked != 0u) {
         float size = length(normal);

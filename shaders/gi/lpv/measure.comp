@@ -20,7 +20,7 @@ vec4 ledger(ivec3 at, uint cells) {
         vec3 classes;
         makeLobe(arrivals[c].w, arrivals[c].xyz, classes);
         float collided;
-        emittedInside(classes, depth[c], albedo[c], emission[c], collided);
+        emittedInside(classes + straightClasses(a, c), depth[c], albedo[c], emission[c], collided);
         result.x += emission[c] + sources[(kLpvEntering + c) * cells + self].w;
         result.y += (1.0 - albedo[c]) * collided;
     }

@@ -14,20 +14,11 @@ layout(rgba32f) writeonly uniform image3D blueLight;
 /// (1 - (1 - e^-x)/x)/x: mean length of ways that begin anywhere on a way of optical depth x and end where it ends.
 float meanOfInnerWays(float x) { return x < 0.02 ? 0.5 - x * (1.0 / 6.0 - x * (1.0 / 24.0)) : (1.0 - oneMinusExpOverX(x)) / x; }
 
-vec4 channelLight(vec4 arrival, float depth, float albedo, float emission) {
-    vec3 classes;
-    vec4 lobe = makeLobe(arrival.w, arrival.xyz, classes);
-    float collided;
-    float emitted = emittedInside(classes, depth, albedo, emission, collided);
-    vec4 sum = vec4(0.0);
-    for (uint j = 0u; j < kLpvDirections; ++j) {
-        vec4 d = params.directions[j].unit;
-        float size = sqrt(float(params.directions[j].offset.w + 1));
-        float way = depth * size;
-        float power = d.w * (lobeTowards(lobe, d.xyz) * oneMinusExpOverX(way) + emitted * meanOfInnerWays(way));
-        sum += power * size * vec4(d.xyz, 1.0);
-    }
-    return sum;
+/// Of power that sets out to cross the cell and of what is emitted inside, in direction j: times the mean length of its way, in cells.
+vec3 onTheWay(vec3 crossing, vec3 emitted, vec3 depth, uint j) {
+    vec3 way = depth * sqrt(float(params.directions[j].offset.w + 1));
+    vec3 inner = vec3(meanOfInnerWays(way.r), meanOfInnerWays(way.g), meanOfInnerWays(way.b));
+    return (crossing * oneMinusExpOverX(way) + params.directions[j].unit.w * emitted * inner) * sqrt(float(params.directions[j].offset.w + 1));
 }
 
 void main() {
@@ -37,13 +28,34 @@ void main() {
     uint self = cellIndex(at);
     for (uint p = 0u; p < kLpvSidePlanes; ++p) sides[uint(params.grid.place.y) + p * cells + self] = links[p * cells + self];
     Arrival a = gatherLight(at, cells);
+    vec4 arrivals[3] = vec4[3](a.red, a.green, a.blue);
     vec3 depth = medium[kLpvDepth * cells + self].rgb;
     vec3 albedo = medium[kLpvAlbedo * cells + self].rgb;
     vec3 emission = sources[kLpvEmission * cells + self].rgb;
+    vec4 lobes[3];
+    vec3 emitted;
+    for (uint c = 0u; c < 3u; ++c) {
+        vec3 classes;
+        float collided;
+        lobes[c] = makeLobe(arrivals[c].w, arrivals[c].xyz, classes);
+        emitted[c] = emittedInside(classes + straightClasses(a, c), depth[c], albedo[c], emission[c], collided);
+    }
+    uint blocked = links[kLpvBlocked * cells + self];
+    vec4 red = vec4(0.0);
+    vec4 green = vec4(0.0);
+    vec4 blue = vec4(0.0);
+    for (uint j = 0u; j < kLpvDirections; ++j) {
+        vec4 d = params.directions[j].unit;
+        vec3 crossing = d.w * vec3(lobeTowards(lobes[0], d.xyz), lobeTowards(lobes[1], d.xyz), lobeTowards(lobes[2], d.xyz));
+        vec3 power = onTheWay(crossing + straightPower(at, cells, blocked, j), emitted, depth, j);
+        red += power.r * vec4(d.xyz, 1.0);
+        green += power.g * vec4(d.xyz, 1.0);
+        blue += power.b * vec4(d.xyz, 1.0);
+    }
     // Power times length in cells, over the cell's volume.
     float unit = 1.0 / (params.grid.lowest.w * params.grid.lowest.w);
     ivec3 to = at + ivec3(0, 0, params.grid.place.x);
-    imageStore(redLight, to, unit * channelLight(a.red, depth.r, albedo.r, emission.r));
-    imageStore(greenLight, to, unit * channelLight(a.green, depth.g, albedo.g, emission.g));
-    imageStore(blueLight, to, unit * channelLight(a.blue, depth.b, albedo.b, emission.b));
+    imageStore(redLight, to, unit * red);
+    imageStore(greenLight, to, unit * green);
+    imageStore(blueLight, to, unit * blue);
 }

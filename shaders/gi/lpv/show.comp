@@ -73,7 +73,7 @@ vec3 valueOf(ivec3 cell, vec3 within, int axis) {
     // From a millionth to a tenth, by powers of ten.
     if (show.what == kLpvShowResidual) return show.white * heat(log(max(change / after, 1e-6) * 1e6) / log(1e5));
     Arrival a = gatherLight(cell, cells);
-    float arrives = a.red.w + a.green.w + a.blue.w + dot(vec3(1.0), sources[kLpvEmission * cells + self].rgb);
+    float arrives = dot(vec3(1.0), arrivingPower(a) + sources[kLpvEmission * cells + self].rgb);
     lost += max(arrives - after, 0.0); // absorbed by media
     return show.white * heat(lost / max(arrives, 1e-30));
 }
