@@ -45,6 +45,10 @@ TYNDALL_CONST uint kLpvSurface = 7u;     // 26, of the first surface on the way 
                                          // them 255 less its distance in 255ths of the way, at least 1; 0: none
 TYNDALL_CONST uint kLpvLinkPlanes = 33u;
 
+// LpvSides, what look-ups need of LpvLinks and LpvMedium: the links' first planes, and
+TYNDALL_CONST uint kLpvCellMedium = 7u; // transport extinction times the cell's edge and albedo, means of the channels, as two halves
+TYNDALL_CONST uint kLpvLookupPlanes = 8u;
+
 struct LpvDirection {
     vec4 unit;    // w: weight in a mean over the sphere
     ivec4 offset; // w: class

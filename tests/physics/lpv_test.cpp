@@ -89,6 +89,34 @@ std::string corner(double light, const std::string& medium) {
         medium, light);
 }
 
+TEST(Lpv, AFloorUnderFogGetsWhatTheTablesSay) {
+    // rt-tables.csv, slab-flux, τ 4, isotropic, collimated µ0 = 1: T less e⁻⁴, of the sun's light. Cells are 1.4 free paths, so that what is between
+    // a surface and the middle of its cell matters. Right under a wide slab its edges are far.
+    const std::pair<double, double> rows[] = {{1.0, 0.3090738216}, {0.9, 0.1285237}};
+    for (const auto& [albedo, transmitted] : rows) {
+        const Scene scene = sceneFromJson(fmt::format(
+            R"({{"tyndall": 1, "nodes": [
+            {{"name": "floor", "primitive": {{"shape": "plane", "size": [40, 40]}}, "material": {{"baseColor": [0.02, 0.02, 0.02], "specular": 0}}}},
+            {{"name": "fog", "medium": {{"type": "homogeneous", "shape": "box", "size": [40, 4, 40], "scattering": [{0}, {0}, {0}],
+                "absorption": [{1}, {1}, {1}]}}, "translation": [0, 2, 0]}},
+            {{"name": "sun", "light": {{"type": "directional", "intensity": 100}}, "rotation": [-0.70710678, 0, 0, 0.70710678]}},
+            {{"name": "eye", "camera": {{"type": "perspective", "yfov": 0.3, "znear": 0.01}}, "translation": [0, 0.05, 0],
+                "rotation": [-0.70710678, 0, 0, 0.70710678]}}], "camera": "eye"}})",
+            albedo, 1 - albedo));
+        RenderOptions options;
+        options.gi = "lpv";
+        options.terms = kIndirect;
+        options.settings = {"gi.lpv.resolution=30"};
+        double radiance = 0; // on the floor, behind 5 cm of fog
+        for (const auto& [name, picture] : sharedRenderer().render(scene, options).terms)
+            if (name.find("LVSE") != std::string::npos) radiance += meanOf(picture);
+        const double irradiance = radiance * kPi / 0.02 * std::exp(0.05);
+        const double expected = 100 * (transmitted - std::exp(-4.0));
+        printf("albedo %.1f: %.2f (%.2f)\n", albedo, irradiance, expected);
+        EXPECT_NEAR(irradiance / expected, 1, 0.1) << albedo;
+    }
+}
+
 TEST(Lpv, LightThatDoublesDoublesThePicture) {
     const std::string fog =
         R"({"name": "fog", "medium": {"type": "homogeneous", "shape": "box", "size": [4, 3, 4], "scattering": [0.3, 0.3, 0.3],

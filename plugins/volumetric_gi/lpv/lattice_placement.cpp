@@ -111,7 +111,7 @@ SharedPlaces sharePlaces(std::vector<LatticeLevel>& levels) {
         grid.place.x = shared.layers;
         grid.place.y = int(shared.links);
         shared.layers += grid.size.z;
-        shared.links += level.cells * gpu::kLpvSidePlanes;
+        shared.links += level.cells * gpu::kLpvLookupPlanes;
         shared.across = glm::max(shared.across, ivec2(grid.size));
         shared.levels.grids[shared.levels.count.x++] = grid;
     }

@@ -77,6 +77,15 @@ LatticeLight latticeLight(vec3 position, vec3 offset) {
     return sum;
 }
 
+/// Transport extinction times a cell's edge, and albedo, of the medium there, in the lattice that gives most of the light.
+vec2 latticeMedium(vec3 position, vec3 offset) {
+    int i = 0;
+    while (i + 1 < levels.count.x && gridShare(levels.grids[i], latticePosition(levels.grids[i], position) + offset) < 0.5) ++i;
+    LpvGrid grid = levels.grids[i];
+    ivec3 cell = cellOnSide(grid, latticePosition(grid, position) + offset);
+    return unpackHalf2x16(links[uint(grid.place.y) + kLpvCellMedium * cellCount(grid) + cellIndex(grid, cell)]);
+}
+
 vec3 fluence(LatticeLight light) { return vec3(light.red.w, light.green.w, light.blue.w); }
 
 /// Vector flux along `direction`.

@@ -19,7 +19,9 @@ void main() {
     if (!isInside(at)) return;
     uint cells = cellCount();
     uint self = cellIndex(at);
-    for (uint p = 0u; p < kLpvSidePlanes; ++p) sides[uint(params.grid.place.y) + p * cells + self] = links[p * cells + self];
+    uint lookups = uint(params.grid.place.y) + self;
+    for (uint p = 0u; p < kLpvSidePlanes; ++p) sides[lookups + p * cells] = links[p * cells + self];
+    sides[lookups + kLpvCellMedium * cells] = 0u; // the paper takes a cell's light for that on a surface
     float unit = transfer.meanLength / (params.grid.lowest.w * params.grid.lowest.w);
     ivec3 to = at + ivec3(0, 0, params.grid.place.x);
     imageStore(redLight, to, lightOf(radianceOf(self, cells, 0u), unit));

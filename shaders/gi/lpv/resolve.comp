@@ -1,12 +1,12 @@
 // The light that there is in each cell, from what is sent: fluence and vector flux, W/m², by the length of its ways through the cell. With it
-// goes what tells on which side of surfaces a point lies: look-ups need no more.
+// goes what tells on which side of surfaces a point lies, and how dense the cell is: look-ups need no more.
 #include "gi/lpv/gather.glsl"
 
 layout(local_size_x = kLpvBlockX, local_size_y = kLpvBlockY, local_size_z = kLpvBlockZ) in;
 
 layout(std430) readonly buffer LpvMedium { vec4 medium[]; };
-// xyz: vector flux, w: fluence, of a channel
 layout(std430) writeonly buffer LpvSides { uint sides[]; };
+// xyz: vector flux, w: fluence, of a channel
 layout(rgba32f) writeonly uniform image3D redLight;
 layout(rgba32f) writeonly uniform image3D greenLight;
 layout(rgba32f) writeonly uniform image3D blueLight;
@@ -26,12 +26,14 @@ void main() {
     if (!isInside(at)) return;
     uint cells = cellCount();
     uint self = cellIndex(at);
-    for (uint p = 0u; p < kLpvSidePlanes; ++p) sides[uint(params.grid.place.y) + p * cells + self] = links[p * cells + self];
     Arrival a = gatherLight(at, cells);
     vec4 arrivals[3] = vec4[3](a.red, a.green, a.blue);
     vec3 depth = medium[kLpvDepth * cells + self].rgb;
     vec3 albedo = medium[kLpvAlbedo * cells + self].rgb;
     vec3 emission = sources[kLpvEmission * cells + self].rgb;
+    uint lookups = uint(params.grid.place.y) + self;
+    for (uint p = 0u; p < kLpvSidePlanes; ++p) sides[lookups + p * cells] = links[p * cells + self];
+    sides[lookups + kLpvCellMedium * cells] = packHalf2x16(vec2(min(meanOf(depth), 6e4), meanOf(albedo)));
     vec4 lobes[3];
     vec3 emitted;
     for (uint c = 0u; c < 3u; ++c) {

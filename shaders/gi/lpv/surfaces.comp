@@ -14,6 +14,19 @@ uniform sampler2D gbufferBase;
 uniform sampler2D gbufferMaterial;
 layout(rgba32f) writeonly uniform image2D surfaceRadiance;
 
+/// Diffuse light that arrives on a surface, of what goes to it (`towards`) and comes from it (`away`) at `depth` of a medium before it: two
+/// streams, S' = -3/2 D and D' = -2 (1 - albedo) S for their sum S and the difference D = away - towards (diffusion, with Marshak's
+/// conditions). Never negative; equal to `towards` where there is no medium, and never more than there is.
+vec3 arrivingThrough(vec3 towards, vec3 away, float depth, float albedo) {
+    float loss = 2.0 * (1.0 - albedo);
+    float x = min(sqrt(1.5 * loss) * depth, 40.0);
+    float sinhOverX = x < 0.01 ? 1.0 + x * x / 6.0 : sinh(x) / x;
+    float transmitted = 1.0 / (cosh(x) + 0.5 * (1.5 + loss) * depth * sinhOverX);
+    float reflected = max(0.5 * (1.5 - loss) * depth * sinhOverX * transmitted, 0.0);
+    vec3 leaving = clamp((away - reflected * towards) / transmitted, vec3(0.0), towards + away);
+    return transmitted * towards + reflected * leaving;
+}
+
 void main() {
     ivec2 texel = ivec2(gl_GlobalInvocationID.xy);
     if (any(greaterThanEqual(texel, imageSize(surfaceRadiance)))) return;
@@ -28,9 +41,13 @@ void main() {
         // other surface there, but the eye is.
         vec2 pixel = vec2(texel) + 0.5;
         vec3 offSurface = kOffSurface * octahedralDecodeUnorm(normals.zw) - 0.01 * cameraRay(pixel).direction;
-        LatticeLight light = latticeLight(renderPosition(pixel, depth), offSurface);
-        // Of radiance (Φ + 3 F·ω)/4π, what arrives on a plane: Φ/4 - F·n/2.
-        vec3 irradiance = max(0.25 * fluence(light) - 0.5 * fluxAlong(light, normal), vec3(0.0));
+        vec3 position = renderPosition(pixel, depth);
+        LatticeLight light = latticeLight(position, offSurface);
+        // Of radiance (Φ + 3 F·ω)/4π, what goes through a plane one way and the other: Φ/4 ∓ F·n/2.
+        vec3 each = 0.25 * fluence(light);
+        vec3 net = 0.5 * fluxAlong(light, normal);
+        vec2 medium = latticeMedium(position, offSurface);
+        vec3 irradiance = arrivingThrough(max(each - net, vec3(0.0)), max(each + net, vec3(0.0)), kOffSurface * medium.x, medium.y);
         radiance = evenReflectance(base, material.y) * irradiance / kPi;
     }
     imageStore(surfaceRadiance, texel, vec4(radiance, 1.0));
