@@ -5,7 +5,7 @@
 // fixed point: the same bits in whatever order texels come. What rounding leaves goes to the ray's next cell.
 #include "common/octahedral.glsl"
 #include "common/view.glsl"
-#include "gi/lpv/even_reflectance.glsl"
+#include "gi/lpv/reflection.glsl"
 #include "gi/lpv/lattice.glsl"
 #include "gi/lpv/sides.glsl"
 #include "lighting/light.glsl"
@@ -155,10 +155,16 @@ void main() {
     vec3 place = latticePosition(ray.origin + ray.direction * surface) + kOffSurface * normal;
     if (any(lessThan(place, vec3(0.0))) || any(greaterThanEqual(place, vec3(params.grid.size.xyz)))) return;
     ivec3 cell = cellOnSide(params.grid, place);
-    vec3 reflected = evenReflectance(base, material.y);
+    Reflection reflected = reflectionOf(base, material.x, material.y);
     float window = lights[inject.light].type == kLightDirectional ? 1.0 : rangeWindow(lights[inject.light].position.w, surface);
     depth = depthBefore(ray, surface);
     Rests none = Rests(vec4[3](vec4(0.0), vec4(0.0), vec4(0.0)), vec3(0.0));
-    depositEntering(cellIndex(cell), cellCount(), power * window * exp(-depth) * reflected, normal * (2.0 / 3.0), none);
+    vec3 arriving = power * window * exp(-depth);
+    // One deposit: a cell holds no more of light that enters it than the first moment of all of it.
+    vec3 mirror = reflect(ray.direction, normal);
+    vec3 along = meanOfLobe(mirror, normal, material.x);
+    vec3 all = reflected.even + reflected.mirrored;
+    float share = meanOf(reflected.mirrored) / max(meanOf(all), 1e-6);
+    depositEntering(cellIndex(cell), cellCount(), arriving * all, mix((2.0 / 3.0) * normal, along, share), none);
 #endif
 }

@@ -1,8 +1,8 @@
-// Indirect light of surfaces from the lattice, before the media between them and the eye: two bands hold no reflections, so what a
-// coat or a metal would reflect is spread as evenly as what the base scatters.
+// Indirect light of surfaces from the lattice, before the media between them and the eye. Of what a coat or a metal reflects two bands hold
+// no more than from which side it comes.
 #include "common/octahedral.glsl"
 #include "common/view.glsl"
-#include "gi/lpv/even_reflectance.glsl"
+#include "gi/lpv/reflection.glsl"
 #include "gi/lpv/lookup.glsl"
 #include "shared/gbuffer.h"
 
@@ -48,7 +48,10 @@ void main() {
         vec3 net = 0.5 * fluxAlong(light, normal);
         vec2 medium = latticeMedium(position, offSurface);
         vec3 irradiance = arrivingThrough(max(each - net, vec3(0.0)), max(each + net, vec3(0.0)), kOffSurface * medium.x, medium.y);
-        radiance = evenReflectance(base, material.y) * irradiance / kPi;
+        Reflection reflection = reflectionOf(base, material.x, material.y);
+        vec3 lobe = meanOfLobe(reflect(cameraRay(pixel).direction, normal), normal, material.x);
+        vec3 mirrored = max(fluence(light) - 3.0 * fluxAlong(light, lobe), vec3(0.0)) / (4.0 * kPi);
+        radiance = reflection.even * irradiance / kPi + reflection.mirrored * mirrored;
     }
     imageStore(surfaceRadiance, texel, vec4(radiance, 1.0));
 }
