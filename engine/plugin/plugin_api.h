@@ -8,12 +8,13 @@
 #include "core/settings.h"
 #include "framegraph/frame_graph.h"
 #include "renderer/frame_resources.h"
+#include "shared/march.h"
 #include "transport/terms.h"
 
 namespace tyndall::plugin {
 
 /// Raised by one whenever anything that crosses the boundary changes its meaning or layout.
-inline constexpr uint32_t kAbiVersion = 3;
+inline constexpr uint32_t kAbiVersion = 4;
 
 /// One technique that a plugin offers: the name that `--gi` takes, and the terms that it computes.
 struct TechniqueInfo {
@@ -96,6 +97,9 @@ struct FrameInputs {
     GBuffer gbuffer;
     LightResources lights;
     MediaResources media;
+    fg::TextureHandle
+        transmittance; // view-sized, of the media on the way to each pixel's surface; null: there are none
+    gpu::MarchParams march; // how rays through media are upsampled: media.march.*
     SceneChange scene;
     const gpu::LightData*
         lightData; // `lights.lightCount` of them, as on the GPU; until the frame is recorded

@@ -122,6 +122,8 @@ FrameImages recordFrame(fg::FrameGraph& graph, const FrameParts& parts, const Fr
                                images.gbuffer,
                                lights,
                                media.resources,
+                               march.transmittance,
+                               marchParams(*media.settings),
                                order.sceneChange,
                                parts.lights.lights().data(),
                                &parts.drawer,

@@ -1,7 +1,5 @@
 #include "renderer/medium_march_pass.h"
 
-#include "shared/march.h"
-
 namespace tyndall {
 namespace {
 
@@ -14,18 +12,11 @@ struct MarchData {
     gpu::MarchParams params;
 };
 
-int factorOf(MarchResolution resolution) { return 1 << int(resolution); }
-
 gpu::MarchParams makeParams(const MediumMarchInputs& inputs, const MediaSettings& settings,
                             bool inScatter, bool emission) {
-    gpu::MarchParams params{};
+    gpu::MarchParams params = marchParams(settings);
     params.lightCount = inputs.lights.lightCount;
-    params.flags = (inScatter ? gpu::kMarchInScatter : 0u) | (emission ? gpu::kMarchEmission : 0u) |
-                   (settings.refine ? gpu::kMarchRefine : 0u);
-    params.factor = uint32_t(factorOf(settings.resolution));
-    params.depthTolerance = settings.depthTolerance;
-    params.transmittanceTolerance = settings.transmittanceTolerance;
-    params.refineWeight = settings.refineWeight;
+    params.flags |= (inScatter ? gpu::kMarchInScatter : 0u) | (emission ? gpu::kMarchEmission : 0u);
     return params;
 }
 
@@ -120,13 +111,21 @@ MediumMarch addUpsamplePass(fg::FrameGraph& graph, const MediaFrame& frame,
                     createImages(builder, {"media.transmittance", "term.LVE", "media.emission"},
                                  inputs.view.width, inputs.view.height, params.flags);
             },
-            [](const MarchData& data, fg::PassContext& context) {
-                record(data, context, true);
-            })
+            [](const MarchData& data, fg::PassContext& context) { record(data, context, true); })
         .result;
 }
 
 } // namespace
+
+gpu::MarchParams marchParams(const MediaSettings& settings) {
+    gpu::MarchParams params{};
+    params.flags = settings.refine ? gpu::kMarchRefine : 0u;
+    params.factor = 1u << uint32_t(settings.resolution);
+    params.depthTolerance = settings.depthTolerance;
+    params.transmittanceTolerance = settings.transmittanceTolerance;
+    params.refineWeight = settings.refineWeight;
+    return params;
+}
 
 MediumMarch addMediumMarchPass(fg::FrameGraph& graph, const MediaFrame& frame,
                                const MediumMarchInputs& inputs) {

@@ -2,6 +2,7 @@
 // The media between the eye and the surfaces.
 
 #include "renderer/media_system.h"
+#include "shared/march.h"
 
 namespace tyndall {
 
@@ -12,6 +13,9 @@ struct MediumMarchInputs {
     bool inScatter = true; // the term LVE is wanted
     bool emission = true;  // the media's part of LE is wanted
 };
+
+/// How rays are marched and, where they are fewer than pixels, upsampled: media.march.*. The flags hold no more than kMarchRefine.
+[[nodiscard]] gpu::MarchParams marchParams(const MediaSettings& settings);
 
 /// View-sized RGBA32F. Null: not computed, because there is none (reason in the report) or it is not wanted.
 struct MediumMarch {

@@ -11,6 +11,7 @@
 #define MARCH_TILE_LIGHTS
 #endif
 #include "media/march.glsl"
+#include "media/nearest_rays.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
@@ -27,10 +28,7 @@ layout(rgba32f) uniform writeonly image2D emission;
 // Known when compiling: what is not wanted costs nothing.
 const uint kWanted = (IN_SCATTER > 0 ? kMarchInScatter : 0u) | (EMISSION == 1 ? kMarchEmission : 0u);
 
-/// The ray of one of the pixels that a marched ray stands for: its depth is that pixel's own, not a mixture.
-ivec2 fullPixel(ivec2 pixel) {
-    return min(pixel * int(params.factor) + int(params.factor) / 2, textureSize(depth, 0) - 1);
-}
+ivec2 fullPixel(ivec2 pixel) { return marchedPixel(pixel, params, textureSize(depth, 0)); }
 
 #if IN_SCATTER == 2
 const uint kListedLights = 1024u; // lights after these are in no list: they always count

@@ -23,6 +23,61 @@ LatticeLight writeLight(fg::Builder& builder, const LatticeLight& light) {
             builder.write(light.sides)};
 }
 
+/// Light that media scatter to the eye: one ray for a square of `pixels` a side or, where there are `rays` of such squares, from them to every pixel.
+fg::TextureHandle addMarch(fg::FrameGraph& graph, const plugin::FrameInputs& inputs,
+                           const gpu::LpvLevels& levels, const LatticeLight& light, int pixels,
+                           fg::TextureHandle rays) {
+    struct Data {
+        ViewResources view;
+        MediaResources media;
+        LatticeLight light;
+        fg::TextureHandle depth, transmittance, rays, inScatter;
+        gpu::LpvLevels levels;
+        gpu::MarchParams params;
+    };
+    const bool upsampled = bool(rays);
+    const int factor = upsampled ? 1 : pixels;
+    return graph
+        .addPass<Data>(
+            upsampled ? "gi.lpv.upsample" : "gi.lpv.march",
+            [&](fg::Builder& builder, Data& data) {
+                if (inputs.media.count == 0 || !inputs.transmittance)
+                    return builder.skip("no medium in view");
+                data.view = inputs.view;
+                data.media = readMedia(builder, inputs.media);
+                data.depth = builder.read(inputs.gbuffer.depth);
+                data.light = readLight(builder, light);
+                if (upsampled) {
+                    data.transmittance = builder.read(inputs.transmittance);
+                    data.rays = builder.read(rays);
+                }
+                data.inScatter = builder.create(
+                    factor == 1 ? "gi.lpv.inScatter" : "gi.lpv.coarse.inScatter",
+                    fg::texture2D(fg::Format::RGBA32F, (inputs.view.width + factor - 1) / factor,
+                                  (inputs.view.height + factor - 1) / factor));
+                data.levels = levels;
+                data.params = inputs.march;
+                data.params.factor = uint32_t(pixels);
+            },
+            [](const Data& data, fg::PassContext& context) {
+                auto command =
+                    context.compute(data.rays ? "gi/lpv/upsample.comp" : "gi/lpv/march.comp",
+                                    {{"PHASE_GROUPS", int32_t(data.media.phaseGroups)},
+                                     {"MEDIA_KINDS", mediaKinds(data.media, false)}});
+                bindView(command, data.view);
+                bindMedia(command, data.media);
+                bindLight(command, data.light, data.levels)
+                    .params(data.params)
+                    .bind("depth", data.depth)
+                    .bind("inScatter", data.inScatter);
+                if (data.rays)
+                    command.bind("transmittance", data.transmittance)
+                        .bind("coarseInScatter", data.rays);
+                command.dispatchOver(data.inScatter);
+            })
+        .inScatter;
+}
+
 } // namespace
 
 LatticeLight createLight(fg::Builder& builder, const SharedPlaces& places) {
@@ -109,40 +164,10 @@ fg::TextureHandle addSurfaceLookup(fg::FrameGraph& graph, const plugin::FrameInp
 }
 
 fg::TextureHandle addMediumLookup(fg::FrameGraph& graph, const plugin::FrameInputs& inputs,
-                                  const gpu::LpvLevels& levels, const LatticeLight& light) {
-    struct Data {
-        ViewResources view;
-        MediaResources media;
-        LatticeLight light;
-        fg::TextureHandle depth, inScatter;
-        gpu::LpvLevels levels;
-    };
-    return graph
-        .addPass<Data>(
-            "gi.lpv.march",
-            [&](fg::Builder& builder, Data& data) {
-                if (inputs.media.count == 0) return builder.skip("no medium in the scene");
-                data.view = inputs.view;
-                data.media = readMedia(builder, inputs.media);
-                data.depth = builder.read(inputs.gbuffer.depth);
-                data.light = readLight(builder, light);
-                data.inScatter = builder.create(
-                    "gi.lpv.inScatter",
-                    fg::texture2D(fg::Format::RGBA32F, inputs.view.width, inputs.view.height));
-                data.levels = levels;
-            },
-            [](const Data& data, fg::PassContext& context) {
-                auto command = context.compute("gi/lpv/march.comp",
-                                               {{"PHASE_GROUPS", int32_t(data.media.phaseGroups)},
-                                                {"MEDIA_KINDS", mediaKinds(data.media, false)}});
-                bindView(command, data.view);
-                bindMedia(command, data.media);
-                bindLight(command, data.light, data.levels)
-                    .bind("depth", data.depth)
-                    .bind("inScatter", data.inScatter)
-                    .dispatchOver(data.inScatter);
-            })
-        .inScatter;
+                                  const gpu::LpvLevels& levels, const LatticeLight& light,
+                                  int pixels) {
+    const fg::TextureHandle rays = addMarch(graph, inputs, levels, light, pixels, {});
+    return !rays || pixels == 1 ? rays : addMarch(graph, inputs, levels, light, pixels, rays);
 }
 
 } // namespace tyndall::volumetric_gi

@@ -27,10 +27,10 @@ struct LatticeLight {
                                                  const gpu::LpvLevels& levels,
                                                  const LatticeLight& light);
 
-/// View-sized RGBA32F nits that reach the eye from media. Skipped where there are none.
+/// View-sized RGBA32F nits that reach the eye from media. Skipped where there are none. One ray is marched for a square of so many pixels a side.
 [[nodiscard]] fg::TextureHandle addMediumLookup(fg::FrameGraph& graph,
                                                 const plugin::FrameInputs& inputs,
                                                 const gpu::LpvLevels& levels,
-                                                const LatticeLight& light);
+                                                const LatticeLight& light, int pixels);
 
 } // namespace tyndall::volumetric_gi

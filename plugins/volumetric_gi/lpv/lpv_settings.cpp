@@ -5,6 +5,7 @@ namespace {
 
 constexpr const char* kShowNames[] = {"nothing",  "light",    "directions", "medium",
                                       "surfaces", "residual", "losses"};
+constexpr const char* kMarchNames[] = {"full", "half", "quarter"};
 constexpr const char* kAxisNames[] = {"x", "y", "z"};
 
 const SettingDesc kLpvSettings[] = {
@@ -38,6 +39,10 @@ const SettingDesc kLpvSettings[] = {
         LpvSettings, keep, "gi.lpv.keep", "Keep light", true,
         "Where nothing has changed light is kept from frame to frame; off: found anew in each, to be timed."),
     TYNDALL_ENUM(
+        LpvSettings, march, "gi.lpv.march", "March resolution", kMarchNames, 1,
+        "Rays along which media show the lattices' light: for every pixel, every 2x2 or every 4x4 pixels; upsampled as media.march.refine and the tolerances "
+        "beside it say."),
+    TYNDALL_ENUM(
         LpvSettings, show, "gi.lpv.show", "Show", kShowNames, 0,
         "A slice of the finest lattice in the picture: its light, where light goes, the depth of a cell of medium (2: white), its surfaces, what the last "
         "step changed (a tenth: white), the part of the light that media and surfaces absorb."),
@@ -48,18 +53,20 @@ const SettingDesc kLpvSettings[] = {
 };
 
 constexpr PresetEntry kLpvPresets[] = {
-    {Quality::Low, "gi.lpv.resolution", "16"},    {Quality::Low, "gi.lpv.steps", "96"},
-    {Quality::Low, "gi.lpv.cascades", "2"},       {Quality::Low, "gi.lpv.tolerance", "0.01"},
-    {Quality::Low, "gi.lpv.rsmSize", "64"},       {Quality::Low, "gi.lpv.rsmRectPoints", "1"},
-    {Quality::Medium, "gi.lpv.resolution", "24"}, {Quality::Medium, "gi.lpv.steps", "128"},
-    {Quality::Medium, "gi.lpv.cascades", "3"},    {Quality::Medium, "gi.lpv.tolerance", "0.005"},
-    {Quality::Medium, "gi.lpv.rsmSize", "96"},    {Quality::Medium, "gi.lpv.rsmRectPoints", "4"},
-    {Quality::High, "gi.lpv.resolution", "32"},   {Quality::High, "gi.lpv.steps", "256"},
-    {Quality::High, "gi.lpv.cascades", "4"},      {Quality::High, "gi.lpv.tolerance", "0.002"},
-    {Quality::High, "gi.lpv.rsmSize", "128"},     {Quality::High, "gi.lpv.rsmRectPoints", "4"},
-    {Quality::Ultra, "gi.lpv.resolution", "64"},  {Quality::Ultra, "gi.lpv.steps", "512"},
-    {Quality::Ultra, "gi.lpv.cascades", "4"},     {Quality::Ultra, "gi.lpv.tolerance", "0.001"},
-    {Quality::Ultra, "gi.lpv.rsmSize", "256"},    {Quality::Ultra, "gi.lpv.rsmRectPoints", "9"},
+    {Quality::Low, "gi.lpv.resolution", "16"},      {Quality::Low, "gi.lpv.steps", "96"},
+    {Quality::Low, "gi.lpv.cascades", "2"},         {Quality::Low, "gi.lpv.tolerance", "0.01"},
+    {Quality::Low, "gi.lpv.rsmSize", "64"},         {Quality::Low, "gi.lpv.rsmRectPoints", "1"},
+    {Quality::Low, "gi.lpv.march", "quarter"},      {Quality::Medium, "gi.lpv.resolution", "24"},
+    {Quality::Medium, "gi.lpv.steps", "128"},       {Quality::Medium, "gi.lpv.cascades", "3"},
+    {Quality::Medium, "gi.lpv.tolerance", "0.005"}, {Quality::Medium, "gi.lpv.rsmSize", "96"},
+    {Quality::Medium, "gi.lpv.rsmRectPoints", "4"}, {Quality::Medium, "gi.lpv.march", "half"},
+    {Quality::High, "gi.lpv.resolution", "32"},     {Quality::High, "gi.lpv.steps", "256"},
+    {Quality::High, "gi.lpv.cascades", "4"},        {Quality::High, "gi.lpv.tolerance", "0.002"},
+    {Quality::High, "gi.lpv.rsmSize", "128"},       {Quality::High, "gi.lpv.rsmRectPoints", "4"},
+    {Quality::High, "gi.lpv.march", "half"},        {Quality::Ultra, "gi.lpv.resolution", "64"},
+    {Quality::Ultra, "gi.lpv.steps", "512"},        {Quality::Ultra, "gi.lpv.cascades", "4"},
+    {Quality::Ultra, "gi.lpv.tolerance", "0.001"},  {Quality::Ultra, "gi.lpv.rsmSize", "256"},
+    {Quality::Ultra, "gi.lpv.rsmRectPoints", "9"},  {Quality::Ultra, "gi.lpv.march", "full"},
 };
 
 } // namespace

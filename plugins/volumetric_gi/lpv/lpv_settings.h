@@ -18,7 +18,8 @@ struct LpvSettings {
     int32_t rsmLights;
     int32_t rsmRectPoints;
     bool reflected, scattered, keep;
-    int32_t show; // 0: nothing, else kLpvShow…
+    int32_t march; // log2 of pixels per ray along an axis
+    int32_t show;  // 0: nothing, else kLpvShow…
     int32_t showAxis;
     float showAt;
 };

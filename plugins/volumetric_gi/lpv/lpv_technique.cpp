@@ -200,7 +200,8 @@ plugin::FrameOutputs LpvTechnique::addPasses(fg::FrameGraph& graph,
     if (inputs.terms & kIndirectOnSurfaces)
         outputs.surfaceRadiance = addSurfaceLookup(graph, inputs, places.levels, light);
     if (inputs.terms & ~kIndirectOnSurfaces)
-        outputs.inScatter = addMediumLookup(graph, inputs, places.levels, light);
+        outputs.inScatter =
+            addMediumLookup(graph, inputs, places.levels, light, 1 << settings_.march);
     if (inputs.statistics) {
         nameStatistics(lattices.size());
         outputs.statistics = control;

@@ -1,44 +1,18 @@
-// Light of the lattice that the media scatter to the eye.
-#define MARCH_PHASE_GROUPS PHASE_GROUPS
-#include "common/phase_function.glsl"
-#include "gi/lpv/lookup.glsl"
-#include "media/march_segment.glsl"
+// Light of the lattices that media scatter to the eye: one ray for each pixel, for 2×2 or for 4×4.
+#include "gi/lpv/scattered_light.glsl"
+#include "media/nearest_rays.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
+layout(std140) uniform Params { MarchParams params; };
 uniform sampler2D depth;
 layout(rgba32f) writeonly uniform image2D inScatter;
 
-const int kMostSegments = 16384; // ends a march whose coordinates have lost their meaning
-
 void main() {
-    ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
-    if (any(greaterThanEqual(pixel, imageSize(inScatter)))) return;
+    ivec2 ray = ivec2(gl_GlobalInvocationID.xy);
+    if (any(greaterThanEqual(ray, imageSize(inScatter)))) return;
+    ivec2 pixel = marchedPixel(ray, params, textureSize(depth, 0));
     vec2 centre = vec2(pixel) + 0.5;
-    Ray ray = cameraRay(centre);
     float distance = rayDistanceFromDepth(centre, texelFetch(depth, pixel, 0).r);
-    vec3 sum = vec3(0.0);
-    float t;
-    float end;
-    if (mediaExtent(ray, distance, t, end)) {
-        vec3 before = vec3(0.0);
-        float opaque = -log(max(mediaHeader.minTransmittance, 1e-30));
-        for (int i = 0; i < kMostSegments && t < end && minimumOf(before) < opaque; ++i) {
-            Segment s = marchSegment(ray, t, end);
-            t = s.start + s.size;
-            if (s.scatters) {
-                LatticeLight light = latticeLight(ray.origin + ray.direction * (s.start + 0.5 * s.size), vec3(0.0));
-                vec3 all = fluence(light);
-                vec3 towardsEye = -fluxAlong(light, ray.direction);
-                vec3 scattered = vec3(0.0);
-                for (uint g = 0u; g < min(mediaHeader.phaseGroupCount, uint(MARCH_PHASE_GROUPS)); ++g) {
-                    float cosine = phaseMeanCosine(uint(mediaHeader.phases[g].x), mediaHeader.phases[g].y);
-                    scattered += s.scattering[g] * max(all + 3.0 * cosine * towardsEye, vec3(0.0));
-                }
-                sum += exp(-before) * oneMinusExpOverX(s.depth) * scattered / (4.0 * kPi);
-            }
-            before = min(before + s.depth, vec3(kOpaque));
-        }
-    }
-    imageStore(inScatter, pixel, vec4(sum, 1.0));
+    imageStore(inScatter, ray, vec4(lightScatteredAlong(cameraRay(centre), distance), 1.0));
 }
