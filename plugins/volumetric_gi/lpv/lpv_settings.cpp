@@ -28,7 +28,7 @@ const SettingDesc kLpvSettings[] = {
                 "Side of a reflective shadow map: of each light, of each of its six directions."),
     TYNDALL_INT(
         LpvSettings, rsmLights, "gi.lpv.rsmLights", "Lights", "", 1, 1024, 64,
-        "Lights whose light is propagated, the strongest first; the others light directly alone."),
+        "Lights whose light is propagated, the strongest first and those of the environment last; the others light directly alone."),
     TYNDALL_INT(LpvSettings, rsmRectPoints, "gi.lpv.rsmRectPoints", "Points of a rect", "", 1, 64,
                 4, "Points of a rectangular light that have reflective shadow maps."),
     TYNDALL_BOOL(LpvSettings, reflected, "gi.lpv.reflected", "Reflected light", true,
@@ -67,6 +67,7 @@ constexpr PresetEntry kLpvPresets[] = {
     {Quality::Ultra, "gi.lpv.steps", "512"},        {Quality::Ultra, "gi.lpv.cascades", "4"},
     {Quality::Ultra, "gi.lpv.tolerance", "0.001"},  {Quality::Ultra, "gi.lpv.rsmSize", "256"},
     {Quality::Ultra, "gi.lpv.rsmRectPoints", "9"},  {Quality::Ultra, "gi.lpv.march", "full"},
+    {Quality::Ultra, "gi.lpv.rsmLights", "160"}, // environment.lights has 64 then
 };
 
 } // namespace

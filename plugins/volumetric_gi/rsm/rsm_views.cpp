@@ -129,8 +129,14 @@ RsmPlan planRsm(std::span<const gpu::LightData> lights, const Bounds& bounds,
     };
     for (uint32_t i = 0; i < lights.size(); ++i)
         if (strength(i) > 0) order.push_back(i);
-    std::stable_sort(order.begin(), order.end(),
-                     [&](uint32_t a, uint32_t b) { return strength(a) > strength(b); });
+    // The environment's last: much of their power falls on roofs, and they are many and alike.
+    const auto ofScene = [&](uint32_t i) {
+        return (lights[i].flags & gpu::kLightFromEnvironment) == 0;
+    };
+    std::stable_sort(order.begin(), order.end(), [&](uint32_t a, uint32_t b) {
+        if (ofScene(a) != ofScene(b)) return ofScene(a);
+        return strength(a) > strength(b);
+    });
     if (order.size() > size_t(mostLights)) {
         plan.lightsLeftOut = uint32_t(order.size()) - uint32_t(mostLights);
         order.resize(size_t(mostLights));
