@@ -11,6 +11,10 @@
 #include "shared/march.h"
 #include "transport/terms.h"
 
+namespace tyndall {
+struct Scene;
+}
+
 namespace tyndall::plugin {
 
 /// Raised by one whenever anything that crosses the boundary changes its meaning or layout.
@@ -104,9 +108,12 @@ struct FrameInputs {
     const gpu::LightData*
         lightData; // `lights.lightCount` of them, as on the GPU; until the frame is recorded
     SurfaceDrawer* surfaces;
-    TermSet terms;   // that the plan gives to this plugin
-    bool statistics; // somebody asks for FrameOutputs::statistics
-    float whiteNits; // luminance that the picture's exposure makes white, before the tone curve
+    const Scene*
+        whole; // as it is on the processor, for who traces rays there; until the frame is recorded
+    double origin[3]; // the world's point that is render space's origin
+    TermSet terms;    // that the plan gives to this plugin
+    bool statistics;  // somebody asks for FrameOutputs::statistics
+    float whiteNits;  // luminance that the picture's exposure makes white, before the tone curve
 };
 
 /// A number about a frame: "iterations.gi.lpv", "residual.gi.lpv", "energy.gi.lpv.injected". The part before the first dot names its kind.

@@ -91,9 +91,10 @@ Outcome ReferenceRun::copyOut() const {
 /// Everything that a sample depends on.
 std::string ReferenceRun::identity() const {
     return fmt::format(
-        "scene {:016x} seed {} depth {} integrator {} transmittance {} version {}-{}",
+        "scene {:016x} seed {} depth {} integrator {} clamp {} transmittance {} version {}-{}",
         reference::sceneHash(scene_, camera_), settings_.seed, options_.maxDepth,
-        options_.integrator, options_.transmittance, TYNDALL_VERSION, reference::kReferenceVersion);
+        options_.integrator, options_.clamp, options_.transmittance, TYNDALL_VERSION,
+        reference::kReferenceVersion);
 }
 
 Outcome ReferenceRun::startOrResume() {

@@ -1,6 +1,9 @@
 #include "programs/reference_options.h"
 
+#include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <utility>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -49,11 +52,22 @@ Result<void> checkNumbers(const ReferenceOptions& options, reference::RenderSett
         return wrong(
             fmt::format("--threads {}: 0 is all cores, and no more than 1024", options.threads));
     settings.path.maxScatterings = options.maxDepth == 0 ? -1 : options.maxDepth;
-    if (options.integrator != "volume" && options.integrator != "simple")
+    static constexpr std::pair<const char*, reference::Integrator> kIntegrators[] = {
+        {"volume", reference::Integrator::Volume},
+        {"simple", reference::Integrator::Simple},
+        {"ir", reference::Integrator::InstantRadiosity}};
+    const auto named = std::find_if(std::begin(kIntegrators), std::end(kIntegrators),
+                                    [&](const auto& i) { return options.integrator == i.first; });
+    if (named == std::end(kIntegrators))
         return wrong(
-            fmt::format("--integrator {}: there are volume and simple", options.integrator));
-    settings.integrator = options.integrator == "simple" ? reference::Integrator::Simple
-                                                         : reference::Integrator::Volume;
+            fmt::format("--integrator {}: there are volume, simple and ir", options.integrator));
+    settings.integrator = named->second;
+    if (settings.integrator == reference::Integrator::InstantRadiosity && options.maxDepth > 0)
+        return wrong("--max-depth does not go with --integrator ir: its walks end by chance");
+    if (!(options.clamp >= 0) || std::isinf(options.clamp))
+        return wrong(fmt::format("--clamp {}: it must be a finite number of metres, 0 or more",
+                                 options.clamp));
+    settings.clampDistance = options.clamp;
     if (options.transmittance != "exact" && options.transmittance != "ratio")
         return wrong(
             fmt::format("--transmittance {}: there are exact and ratio", options.transmittance));
@@ -116,8 +130,14 @@ void addReferenceOptions(CLI::App& command, ReferenceOptions& options) {
     command
         .add_option(
             "--integrator", options.integrator,
-            "volume, or simple: slow, short, without aiming at lights; lights without extent stay dark")
+            "volume; simple: slow, short, without aiming at lights, so that lights without extent stay dark; or ir: virtual point lights of a walk for each "
+            "sample, and what their bound takes away")
         ->type_name("NAME");
+    command
+        .add_option(
+            "--clamp", options.clamp,
+            "With ir: virtual lights nearer than this count as this near, and paths bring the rest (0.1)")
+        ->type_name("METRES");
     command
         .add_option("--transmittance", options.transmittance,
                     "Of grids: ratio, unbiased estimates, or exact, slower (ratio)")

@@ -17,7 +17,7 @@ struct ReferenceOptions {
     std::string scene, output, size = "1280x720", terms = "all", camera, integrator = "volume",
                                transmittance = "ratio", report, cache;
     int64_t spp = 0;
-    double seconds = 0, targetError = 0, checkpointSeconds = 30;
+    double seconds = 0, targetError = 0, checkpointSeconds = 30, clamp = 0.1;
     int maxDepth = 0, threads = 0;
     uint64_t seed = 0;
     bool resume = false, half = false, keep = false;

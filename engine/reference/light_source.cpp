@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/check.h"
+
 namespace tyndall::reference {
 namespace {
 
@@ -13,6 +15,12 @@ bool finite(const dvec3& v) {
 }
 
 } // namespace
+
+double rangeWindow(double range, double distance) {
+    if (!(range > 0)) return 1;
+    const double x = distance / range;
+    return std::clamp(1 - x * x * x * x, 0.0, 1.0);
+}
 
 LightSource::LightSource(const Light& light, const dmat4& rayFromNode)
     : type_(light.type), castsShadows_(light.castsShadows), centre_(rayFromNode[3]) {
@@ -54,11 +62,7 @@ LightSource::LightSource(const Light& light, const dmat4& rayFromNode)
 
 /// KHR_lights_punctual: range and cone.
 dvec3 LightSource::fading(const dvec3& travel, double distance) const {
-    double factor = 1;
-    if (range_ > 0) {
-        const double x = distance / range_;
-        factor = std::clamp(1 - x * x * x * x, 0.0, 1.0);
-    }
+    double factor = rangeWindow(range_, distance);
     if (type_ == LightType::Spot) {
         const double part = std::clamp((glm::dot(axis_, travel) - cosineOuter_) /
                                            std::max(0.001, cosineInner_ - cosineOuter_),
@@ -171,6 +175,38 @@ LightSample LightSource::meet(const Ray& ray) const {
         result.density = (1 + std::sqrt(1 - sine2)) / (2 * kPi * sine2);
     }
     return result;
+}
+
+double LightSource::power(double discArea) const {
+    if (black_) return 0;
+    if (type_ == LightType::Directional) return meanOf(power_) * discArea;
+    if (type_ == LightType::Rect) return meanOf(power_) * kPi * area_;
+    const double cone = type_ == LightType::Spot && radius_ == 0 ? 0.5 * (1 - cosineOuter_) : 1;
+    return meanOf(power_) * 4 * kPi * cone;
+}
+
+EmittedRay LightSource::emit(const dvec2& where, const dvec2& way) const {
+    CHECK(local(), "light from infinity starts nowhere");
+    EmittedRay out;
+    if (black_) return out;
+    out.range = range_;
+    const double lambert = std::sqrt(1 - way.x);
+    if (type_ == LightType::Rect) {
+        out.ray = {centre_ + (2 * where.x - 1) * halfX_ + (2 * where.y - 1) * halfY_,
+                   glm::normalize(Frame(axis_).toWorld(directionAround(lambert, way.y)))};
+        out.power = power_ * (kPi * area_);
+    } else if (radius_ > 0) { // a Lambertian ball; cone and range as fading() has them
+        const dvec3 normal = directionAround(1 - 2 * where.x, where.y);
+        out.ray = {centre_ + radius_ * normal,
+                   glm::normalize(Frame(normal).toWorld(directionAround(lambert, way.y)))};
+        out.power = fading(out.ray.direction, 0) * (4 * kPi);
+    } else {
+        const double versine = type_ == LightType::Spot ? 1 - cosineOuter_ : 2;
+        out.ray = {centre_, glm::normalize(
+                                Frame(axis_).toWorld(directionAround(1 - way.x * versine, way.y)))};
+        out.power = fading(out.ray.direction, 0) * (2 * kPi * versine);
+    }
+    return out;
 }
 
 double LightSource::importance(const dvec3& from) const {

@@ -15,6 +15,16 @@ struct LightSample {
     double density = 0; // per steradian; of a light without extent: 1. 0: no light comes from there
 };
 
+/// KHR_lights_punctual: what takes the inverse square to 0 at the range; 1 for unbounded lights (range 0).
+[[nodiscard]] double rangeWindow(double range, double distance);
+
+/// A ray that some light sends out, with the power that it stands for.
+struct EmittedRay {
+    Ray ray;
+    dvec3 power{0};   // watts: radiance · cosine / density of the ray; 0: nothing
+    double range = 0; // metres, for rangeWindow()
+};
+
 class LightSource {
 public:
     /// `rayFromNode` maps the light's node to ray space.
@@ -34,6 +44,11 @@ public:
     [[nodiscard]] double importance(const dvec3& from) const;
     /// Roughly ∫ importance dt along [0,length] of the ray.
     [[nodiscard]] double importanceAlong(const Ray& ray, double length) const;
+    /// Watts, the mean of the channels; of a spot, as much as its whole outer cone could have. `discArea`: m², of what light from infinity falls on.
+    [[nodiscard]] double power(double discArea) const;
+    /// A ray of a light at a place in space. CHECKs local().
+    [[nodiscard]] EmittedRay emit(const dvec2& where, const dvec2& way) const;
+
     /// At a place in space, from which equiangular sampling can see it; false for light from infinity.
     [[nodiscard]] bool local() const { return type_ != LightType::Directional; }
     [[nodiscard]] const dvec3& centre() const { return centre_; }

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/check.h"
+
 namespace tyndall::reference {
 namespace {
 
@@ -169,24 +171,57 @@ AimedSample Lights::aimAtGlow(const dvec3& from, double u0, const dvec2& u) cons
     return result;
 }
 
+Lights::PointOfTriangle Lights::pickPoint(double u0, const dvec2& u) const {
+    PointOfTriangle point;
+    const double target = u0 * emitterSums_.back();
+    const size_t i = size_t(std::upper_bound(emitterSums_.begin(), emitterSums_.end(), target) -
+                            emitterSums_.begin());
+    point.emitter = std::clamp<size_t>(i, 1, emitters_.size()) - 1;
+    const Emitter& emitter = emitters_[point.emitter];
+    const MeshInstance& instance = surfaces_.instances()[emitter.instance];
+    const double root = std::sqrt(u.x);
+    point.hit.instance = emitter.instance;
+    point.hit.triangle = emitter.triangle;
+    point.hit.u = root * (1 - u.y);
+    point.hit.v = root * u.y;
+    point.position = (1 - root) * corner(instance, emitter.triangle, 0) +
+                     point.hit.u * corner(instance, emitter.triangle, 1) +
+                     point.hit.v * corner(instance, emitter.triangle, 2);
+    return point;
+}
+
+EmittedRay Lights::emitFromTriangle(double u0, const dvec2& where, const dvec2& way) const {
+    CHECK(!emitters_.empty(), "no triangle glows");
+    const PointOfTriangle from = pickPoint(u0, where);
+    const Emitter& emitter = emitters_[from.emitter];
+    const MeshInstance& instance = surfaces_.instances()[emitter.instance];
+    const dvec3 doubled = doubledArea(instance, emitter.triangle);
+    const double area = 0.5 * glm::length(doubled);
+    EmittedRay out;
+    if (!(area > 0)) return out;
+    dvec3 normal = doubled * ((instance.mirrored ? -0.5 : 0.5) / area);
+    dvec2 u = way;
+    const double sides = instance.material->doubleSided ? 2 : 1;
+    if (sides > 1) { // one number tells the side and, stretched, the direction
+        if (u.x >= 0.5) normal = -normal;
+        u.x = std::min(2 * (u.x >= 0.5 ? u.x - 0.5 : u.x), 0x1.fffffffffffffp-1);
+    }
+    const dvec3 direction =
+        glm::normalize(Frame(normal).toWorld(directionAround(std::sqrt(1 - u.x), u.y)));
+    const SurfacePoint point = surfaces_.pointAt({from.position + normal, -normal}, from.hit);
+    const double chance =
+        (emitterSums_[from.emitter + 1] - emitterSums_[from.emitter]) / emitterSums_.back();
+    out.ray = rayFrom(point, direction);
+    out.power = point.emission *
+                surfaces_.coverageAt(from.hit.instance, from.hit.triangle, from.hit.u, from.hit.v) *
+                (kPi * area * sides / chance);
+    return out;
+}
+
 AimedSample Lights::aimAtTriangle(const dvec3& from, double u0, const dvec2& u) const {
     AimedSample result;
     if (emitters_.empty()) return result;
-    const double target = u0 * emitterSums_.back();
-    size_t i = size_t(std::upper_bound(emitterSums_.begin(), emitterSums_.end(), target) -
-                      emitterSums_.begin());
-    i = std::clamp<size_t>(i, 1, emitters_.size()) - 1;
-    const Emitter& emitter = emitters_[i];
-    const MeshInstance& instance = surfaces_.instances()[emitter.instance];
-    RayHit hit;
-    hit.instance = emitter.instance;
-    hit.triangle = emitter.triangle;
-    const double root = std::sqrt(u.x);
-    hit.u = root * (1 - u.y);
-    hit.v = root * u.y;
-    const dvec3 at = (1 - root) * corner(instance, emitter.triangle, 0) +
-                     hit.u * corner(instance, emitter.triangle, 1) +
-                     hit.v * corner(instance, emitter.triangle, 2);
+    const auto [i, hit, at] = pickPoint(u0, u);
     const dvec3 way = at - from;
     const double distance = glm::length(way);
     if (!(distance > 0)) return result;

@@ -61,6 +61,12 @@ public:
     /// A way to light number `light` from a point; density without the chance of that light.
     [[nodiscard]] AimedSample aim(size_t light, const dvec3& from, double u0, const dvec2& u) const;
 
+    /// Watts that all glowing triangles send out, the mean of the channels; a bound where textures dim them.
+    [[nodiscard]] double emittedPower() const { return kPi * emitterSums_.back(); }
+    /// A ray of one of them, drawn by that bound. CHECKs that there are any.
+    [[nodiscard]] EmittedRay emitFromTriangle(double u0, const dvec2& where,
+                                              const dvec2& way) const;
+
     /// Density per steradian with which aim() finds this point of a glowing triangle from `from`.
     [[nodiscard]] double emitterDensity(uint32_t emitter, const dvec3& from, const dvec3& at) const;
 
@@ -70,6 +76,13 @@ private:
     };
     void collectEmitters(SurfaceScene& surfaces);
     [[nodiscard]] AimedSample aimAtGlow(const dvec3& from, double u0, const dvec2& u) const;
+    /// Which triangle `u` picks, and a point of it.
+    struct PointOfTriangle {
+        size_t emitter = 0;
+        RayHit hit;
+        dvec3 position{0};
+    };
+    [[nodiscard]] PointOfTriangle pickPoint(double u0, const dvec2& u) const;
     [[nodiscard]] AimedSample aimAtTriangle(const dvec3& from, double u0, const dvec2& u) const;
 
     std::vector<LightSource> lamps_;

@@ -83,6 +83,19 @@ void MediumSource::makeBrickBounds() {
     }
 }
 
+Bounds MediumSource::bounds() const {
+    Bounds local;
+    if (endless() || kind_ == MediumKind::Particles) return local;
+    if (isGrid()) {
+        local.minimum = dvec3(grid_->origin);
+        local.maximum = local.minimum + double(kBrickCells) * dvec3(grid_->brickCount);
+    } else {
+        local.include(dvec3(-1));
+        local.include(dvec3(1));
+    }
+    return local.transformed(glm::inverse(localFromRay_));
+}
+
 Interval MediumSource::clip(const Ray& ray, double length) const {
     switch (kind_) {
     case MediumKind::Everywhere: return {0, length};

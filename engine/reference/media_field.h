@@ -58,6 +58,8 @@ public:
         return kind_ == MediumKind::Everywhere || kind_ == MediumKind::Height;
     }
     [[nodiscard]] bool isGrid() const { return kind_ == MediumKind::Grid; }
+    /// In ray space; empty for media without an end.
+    [[nodiscard]] Bounds bounds() const;
 
 private:
     friend class MediumWalk;

@@ -30,6 +30,28 @@ dvec3 MediumPoint::phase(const dvec3& before, const dvec3& after) const {
     return sum;
 }
 
+const MediumSource& MediumPoint::pick(int hero, double u, dvec3& share) const {
+    CHECK(!parts_.empty(), "nothing scatters here");
+    share = dvec3(1);
+    if (parts_.size() == 1) return *parts_[0].medium;
+    const Part* chosen = nullptr;
+    double target = u * scattering[hero], chance = 0;
+    for (const Part& part : parts_) {
+        const double weight = part.density * part.medium->scattering[hero];
+        if (!(weight > 0)) continue;
+        chosen = &part;
+        chance = weight / scattering[hero];
+        if (target < weight) break;
+        target -= weight;
+    }
+    CHECK(chosen != nullptr, "nothing scatters the hero here");
+    for (int c = 0; c < 3; ++c)
+        share[c] = scattering[c] > 0
+                       ? chosen->density * chosen->medium->scattering[c] / scattering[c] / chance
+                       : 0;
+    return *chosen->medium;
+}
+
 dvec3 MediumPoint::samplePhase(int hero, const dvec3& before, double choice, const dvec2& u) const {
     const Part* chosen = &parts_.back();
     if (parts_.size() > 1) {

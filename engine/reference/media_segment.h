@@ -34,6 +34,10 @@ public:
 
     /// Per steradian and channel; `before` and `after` are directions of travel.
     [[nodiscard]] dvec3 phase(const dvec3& before, const dvec3& after) const;
+    /// One of the media there, drawn by how much it scatters of the hero; `share` becomes, by channel, its part of the scattering over the chance
+    /// that it was drawn with. CHECKs that something scatters.
+    [[nodiscard]] const MediumSource& pick(int hero, double u, dvec3& share) const;
+
     /// A direction of travel drawn from the hero's mixture.
     [[nodiscard]] dvec3 samplePhase(int hero, const dvec3& before, double choice,
                                     const dvec2& u) const;

@@ -17,6 +17,33 @@ int tilesAcross(int pixels) { return (pixels + kTile - 1) / kTile; }
 
 } // namespace
 
+/// One thread's integrators, of which one is at work.
+class ReferenceRender::Tracers {
+public:
+    Tracers(const TracerScene& scene, const LightEmission& emission, const RenderSettings& settings)
+        : integrator_(settings.integrator), volume_(scene, settings.path),
+          simple_(scene, settings.path),
+          radiosity_(scene, emission,
+                     {settings.path.terms, settings.clampDistance, settings.compensate}) {}
+
+    void trace(const CameraRays::CameraRay& ray, Sampler& sampler, TermLight& light) {
+        switch (integrator_) {
+        case Integrator::Simple: return simple_.trace(ray, sampler, light);
+        case Integrator::InstantRadiosity: return radiosity_.trace(ray, sampler, light);
+        case Integrator::Volume: return volume_.trace(ray, sampler, light);
+        }
+    }
+    [[nodiscard]] PathCounts counts() const {
+        return integrator_ == Integrator::InstantRadiosity ? radiosity_.counts() : volume_.counts();
+    }
+
+private:
+    Integrator integrator_;
+    VolumePathTracer volume_;
+    SimplePathTracer simple_;
+    InstantRadiosity radiosity_;
+};
+
 Result<ReferenceRender> ReferenceRender::start(const Scene& scene, int cameraNode,
                                                const RenderSettings& settings) {
     const CameraRays camera(scene, cameraNode, settings.width, settings.height);
@@ -25,9 +52,8 @@ Result<ReferenceRender> ReferenceRender::start(const Scene& scene, int cameraNod
     return ReferenceRender(std::move(*traced), camera, settings);
 }
 
-void ReferenceRender::renderTile(int tile, uint32_t first, uint32_t count, VolumePathTracer& tracer,
+void ReferenceRender::renderTile(int tile, uint32_t first, uint32_t count, Tracers& tracers,
                                  Film& film) const {
-    const SimplePathTracer simple(scene_, settings_.path);
     const int columns = tilesAcross(settings_.width), left = tile % columns * kTile,
               top = tile / columns * kTile;
     const int right = std::min(left + kTile, settings_.width),
@@ -39,18 +65,16 @@ void ReferenceRender::renderTile(int tile, uint32_t first, uint32_t count, Volum
                 Sampler sampler(settings_.seed, pixel, sample);
                 const CameraRays::CameraRay ray = camera_.through(x, y, sampler.next2());
                 TermLight light;
-                if (settings_.integrator == Integrator::Simple)
-                    simple.trace(ray, sampler, light);
-                else
-                    tracer.trace(ray, sampler, light);
+                tracers.trace(ray, sampler, light);
                 film.add(x, y, sample, light);
             }
         }
 }
 
 bool ReferenceRender::addSamples(uint32_t samples, const std::function<bool()>& stop) {
-    tbb::enumerable_thread_specific<VolumePathTracer> tracers(
-        [this] { return VolumePathTracer(scene_, settings_.path); });
+    const LightEmission emission(scene_);
+    tbb::enumerable_thread_specific<Tracers> tracers(
+        [&] { return Tracers(scene_, emission, settings_); });
     std::atomic<bool> stopped{false};
     const int tiles = tilesAcross(settings_.width) * tilesAcross(settings_.height);
     const uint32_t first = film_.samples();
@@ -71,7 +95,7 @@ bool ReferenceRender::addSamples(uint32_t samples, const std::function<bool()>& 
     });
     if (stopped) return false;
     film_.setSamples(first + samples);
-    for (const VolumePathTracer& tracer : tracers) counts_.add(tracer.counts());
+    for (const Tracers& one : tracers) counts_.add(one.counts());
     return true;
 }
 

@@ -5,16 +5,18 @@
 
 #include "core/result.h"
 #include "reference/film.h"
-#include "reference/volume_path_tracer.h"
+#include "reference/instant_radiosity.h"
 
 namespace tyndall::reference {
 
-enum class Integrator { Volume = 0, Simple = 1 };
+enum class Integrator { Volume = 0, Simple = 1, InstantRadiosity = 2 };
 
 struct RenderSettings {
     int width = 1280, height = 720;
     PathSettings path;
     Integrator integrator = Integrator::Volume;
+    double clampDistance = 0.1; // metres, InstantRadiosity: 1/√b
+    bool compensate = true;     // InstantRadiosity
     uint64_t seed = 0;
     int threads = 0; // 0: all cores
 };
@@ -40,8 +42,8 @@ private:
     ReferenceRender(TracerScene scene, const CameraRays& camera, const RenderSettings& settings)
         : scene_(std::move(scene)), camera_(camera), settings_(settings),
           film_(settings.width, settings.height, settings.path.terms) {}
-    void renderTile(int tile, uint32_t first, uint32_t count, VolumePathTracer& tracer,
-                    Film& film) const;
+    class Tracers;
+    void renderTile(int tile, uint32_t first, uint32_t count, Tracers& tracers, Film& film) const;
 
     TracerScene scene_;
     CameraRays camera_;

@@ -128,6 +128,7 @@ void SurfaceScene::addMesh(const Scene& scene, const Mesh& mesh, const dmat4& ra
         instance.positions.push_back(vec3(at));
         bounds_.include(at);
     }
+    instance.firstTriangle = uint32_t(triangleCount_);
     triangleCount_ += mesh.indices.size() / 3;
     instances_.push_back(std::move(instance));
 }
@@ -213,6 +214,18 @@ bool SurfaceScene::occluded(const Ray& ray, double farthest, uint64_t chance) co
     setRay(shadow, ray, 0, farthest);
     rtcOccluded1(tree_, &context.embree, &shadow);
     return shadow.tfar < 0;
+}
+
+std::vector<vec4> SurfaceScene::planes() const {
+    std::vector<vec4> planes;
+    planes.reserve(triangleCount_);
+    for (const MeshInstance& instance : instances_)
+        for (size_t i = 0; i < instance.mesh->indices.size() / 3; ++i) {
+            const dvec3 normal = unitOr(facetOf(instance, uint32_t(i)), dvec3(0));
+            const dvec3 corner(instance.positions[instance.mesh->indices[3 * i]]);
+            planes.push_back(vec4(vec3(normal), float(-glm::dot(normal, corner))));
+        }
+    return planes;
 }
 
 VertexValues SurfaceScene::vertexValues(const RayHit& hit) const {

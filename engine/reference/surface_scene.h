@@ -24,6 +24,7 @@ struct MeshInstance {
     mat3 normalFromMesh{1}; // inverse transpose; sign of the determinant left in
     mat3 rayFromMesh{1};    // of vectors: tangents
     bool mirrored = false;
+    uint32_t firstTriangle = 0; // number of its first triangle among all
     std::vector<vec3> positions;
     uint32_t firstEmitter =
         0; // number of its first triangle among all that emit; kNoEmitter: it does not
@@ -70,6 +71,8 @@ public:
     [[nodiscard]] std::vector<MeshInstance>& mutableInstances() { return instances_; }
     [[nodiscard]] const MaterialReader& materials() const { return materials_; }
     [[nodiscard]] size_t triangleCount() const { return triangleCount_; }
+    /// n·p = d of the plane that a triangle lies in, as (n, -d), ray space; 0 for one without area. `triangle` counts through all instances.
+    [[nodiscard]] std::vector<vec4> planes() const;
     /// Of all triangles, in ray space; empty without any.
     [[nodiscard]] const Bounds& bounds() const { return bounds_; }
     /// Sentences on what is left out.

@@ -127,6 +127,8 @@ FrameImages recordFrame(fg::FrameGraph& graph, const FrameParts& parts, const Fr
                                order.sceneChange,
                                parts.lights.lights().data(),
                                &parts.drawer,
+                               order.scene,
+                               {order.renderOrigin.x, order.renderOrigin.y, order.renderOrigin.z},
                                0,
                                order.statistics,
                                displayWhite(order.ev100, parts.postSettings)};

@@ -34,6 +34,8 @@ struct FrameOrder {
     ViewResources view;
     const FramePlan* plan = nullptr;
     plugin::SceneChange sceneChange{};
+    const Scene* scene = nullptr;
+    dvec3 renderOrigin{0}; // world
     float ev100 = 0;
     uint32_t averagedFrame =
         0; // 0: this frame stands alone; else its number in the average, from 1

@@ -158,6 +158,8 @@ Result<FrameResult> Renderer::renderFrame(const FrameRequest& request) {
     if (!plan) return plan.error();
 
     r.order.plan = &*plan;
+    r.order.scene = r.scene;
+    r.order.renderOrigin = r.renderOrigin;
     r.order.ev100 = r.scene->ev100;
     r.order.separateTerms = request.separateTerms;
     r.order.statistics = request.statistics;

@@ -4,6 +4,7 @@
 
 #include "volumetric_gi/lpv/lpv_technique.h"
 #include "volumetric_gi/octaves/octaves_pass.h"
+#include "volumetric_gi/vpl/vpl_technique.h"
 
 namespace tyndall::volumetric_gi {
 namespace {
@@ -15,7 +16,10 @@ constexpr plugin::TechniqueInfo kTechniques[] = {
     {"lpv", "Light propagation volume",
      "Light that surfaces reflect and media scatter, propagated in a lattice: all indirect light.",
      kIndirectOnSurfaces | kIndirectInMedia,
-     0}, // one lattice a scene: too coarse for landscapes, until it has cascades
+     0}, // seconds a frame without a GPU: who wants it asks for it
+    {"vpl", "Virtual point lights",
+     "Light of random walks, gathered from the virtual lights that they leave: all indirect light.",
+     kIndirectOnSurfaces | kIndirectInMedia, 0},
 };
 /// Of all techniques.
 struct CommonSettings {
@@ -27,7 +31,7 @@ const SettingDesc kCommonSettings[] = {
                  "corrected, or as the techniques' papers print them, as far as that can work."),
 };
 
-constexpr uint32_t kLpv = 1; // index in the table
+constexpr uint32_t kLpv = 1, kVpl = 2; // indices in the table
 constexpr plugin::PluginInfo kInfo{"volumetric_gi", "0.1.0",
                                    "Global illumination in scenes with participating media.",
                                    kTechniques, uint32_t(std::size(kTechniques))};
@@ -36,7 +40,7 @@ class VolumetricGi final : public plugin::Plugin {
 public:
     const plugin::PluginInfo& info() const override { return kInfo; }
 
-    uint32_t settingsGroupCount() const override { return 3; }
+    uint32_t settingsGroupCount() const override { return 4; }
     void settingsGroup(uint32_t index, const SettingDesc** fields, uint32_t* count,
                        void** values) override {
         const auto give = [&](std::span<const SettingDesc> all, void* of) {
@@ -46,7 +50,8 @@ public:
         };
         if (index == 0) return give(kCommonSettings, &common_);
         if (index == 1) return give(octavesSettings(), &octaves_);
-        give(lpvSettings(), &lpv_.settings());
+        if (index == 2) return give(lpvSettings(), &lpv_.settings());
+        give(vplSettings(), &vpl_.settings());
     }
     void presets(const PresetEntry** entries, uint32_t* count) const override {
         *entries = presets_.data();
@@ -63,6 +68,7 @@ public:
     plugin::FrameOutputs addPasses(fg::FrameGraph& graph, uint32_t technique,
                                    const plugin::FrameInputs& inputs) override {
         if (technique == kLpv) return lpv_.addPasses(graph, inputs, *host_, common_.paper != 0);
+        if (technique == kVpl) return vpl_.addPasses(graph, inputs, *host_);
         plugin::FrameOutputs outputs;
         outputs.inScatter = addOctavesPass(graph, inputs, octaves_);
         return outputs;
@@ -78,9 +84,11 @@ private:
     CommonSettings common_{};
     OctavesSettings octaves_{};
     LpvTechnique lpv_;
+    VplTechnique vpl_;
     std::vector<PresetEntry> presets_ = [] {
         std::vector<PresetEntry> all(octavesPresets().begin(), octavesPresets().end());
         all.insert(all.end(), lpvPresets().begin(), lpvPresets().end());
+        all.insert(all.end(), vplPresets().begin(), vplPresets().end());
         return all;
     }();
 };

@@ -34,4 +34,22 @@ float phaseMeanCosine(uint kind, float g) {
     return kind == kPhaseCornetteShanks ? 3.0 * g * (4.0 + g * g) / (5.0 * (2.0 + g * g)) : g;
 }
 
+/// The cosine of a scattered direction, by inversion, without cancellation at any g (u in [0,1)). `weight`: of the function over the density drawn with: 1 but for
+/// Cornette and Shanks, whose cosines are drawn from Henyey and Greenstein's.
+float samplePhaseFunction(uint kind, float g, float u, out float weight) {
+    weight = 1.0;
+    if (kind == kPhaseRayleigh) { // cos³ + 3 cos = 8u - 4
+        float h = 4.0 * u - 2.0;
+        float root = sign(h) * pow(abs(h) + sqrt(h * h + 1.0), 1.0 / 3.0);
+        return h == 0.0 ? 0.0 : clamp(root - 1.0 / root, -1.0, 1.0);
+    }
+    float a = abs(g);
+    float v = g < 0.0 ? 1.0 - u : u;
+    float d = 1.0 - a + 2.0 * a * v;
+    float cosine = clamp(1.0 - 2.0 * (1.0 - a) * (1.0 - a) * (1.0 - v) * (1.0 + a * v) / (d * d), -1.0, 1.0);
+    if (g < 0.0) cosine = -cosine;
+    if (kind == kPhaseCornetteShanks) weight = cornetteShanks(g, cosine) / henyeyGreenstein(g, cosine);
+    return cosine;
+}
+
 #endif

@@ -1,0 +1,54 @@
+#pragma once
+// Instant radiosity without bias, in surfaces and media: the ground truth of virtual point lights, and slow. Of each path from the eye the
+// first vertex gathers the virtual point lights of one walk, with the geometry term held at a bound; what the bound takes away is
+// had by following the path on to nearby vertices that gather in the same way, and so on (Kollig and Keller 2004; Raab, Seibert and
+// Keller 2006; Engelhardt, Novák and Dachsbacher 2010, section 4.3). The mean is the same for every bound.
+//
+// Light between vertices x and y: G = D_x D_y / |x - y|², D the facet's cosine on a surface and 1 in a medium. The part min(1, b/G) of it comes
+// from virtual lights at y, the part max(0, 1 - b/G) from following.
+
+#include "reference/light_walk.h"
+#include "reference/volume_path_tracer.h"
+
+namespace tyndall::reference {
+
+struct InstantRadiositySettings {
+    TermSet terms = kAllTerms;
+    double clampDistance =
+        0.1; // metres: b = 1/clampDistance²; 0: no bound; infinite: nothing is left to virtual lights
+    bool compensate = true; // false: what the bound takes away is missing
+};
+
+class InstantRadiosity {
+public:
+    InstantRadiosity(const TracerScene& scene, const LightEmission& emission,
+                     const InstantRadiositySettings& settings);
+
+    void trace(const CameraRays::CameraRay& start, Sampler& sampler, TermLight& light);
+    [[nodiscard]] PathCounts counts() const;
+
+private:
+    struct Vertex;
+    bool nextVertex(Ray& ray, double nearest, RayKind kind, Vertex& vertex);
+    void gatherWalk(const Vertex& vertex);
+    void gatherLights(const Vertex& vertex);
+    void see(PathHistory history, const dvec3& light);
+
+    const TracerScene& scene_;
+    InstantRadiositySettings settings_;
+    VolumePathTracer direct_; // the terms that no virtual light makes
+    LightWalker walker_;
+    MediaSegment segment_;
+    PathCounts counts_;
+    std::vector<WalkVertex> walk_;
+    // Of the present path.
+    Sampler* sampler_ = nullptr;
+    TermLight* light_ = nullptr;
+    PathWeights weights_;
+    PathHistory history_;
+    MediumPoint mediumPoint_;
+    std::vector<EmittedLight> emitted_;
+    LightChoice choice_;
+};
+
+} // namespace tyndall::reference

@@ -1,0 +1,57 @@
+#include "volumetric_gi/vpl/vpl_settings.h"
+
+namespace tyndall::volumetric_gi {
+namespace {
+
+constexpr const char* kCompensationNames[] = {"clamped", "closed", "traced"};
+constexpr const char* kMarchNames[] = {"full", "half", "quarter", "eighth"};
+
+const SettingDesc kVplSettings[] = {
+    TYNDALL_INT(
+        VplSettings, walks, "gi.vpl.walks", "Walks", "", 1, 65536, 256,
+        "Random walks from the lights; each leaves a virtual light wherever it is scattered."),
+    TYNDALL_INT(
+        VplSettings, classes, "gi.vpl.classes", "Classes", "", 1, 1024, 8,
+        "A pixel, and a point along its ray, gathers one in so many walks; its neighbours gather others."),
+    TYNDALL_INT(VplSettings, mapSide, "gi.vpl.mapSide", "Visibility map", "texels", 0, 512, 64,
+                "Side of a virtual light's map of what it sees; 0: nothing hides it."),
+    TYNDALL_ENUM(
+        VplSettings, compensation, "gi.vpl.compensation", "Compensation", kCompensationNames, 2,
+        "What the bound takes away: missing, made up for as if light were even, or gathered from a point near by."),
+    TYNDALL_ENUM(
+        VplSettings, march, "gi.vpl.march", "March resolution", kMarchNames, 1,
+        "Rays along which media show virtual lights: for every pixel, or for squares of 2, 4 or 8 pixels a side."),
+    TYNDALL_FLOAT(
+        VplSettings, clamp, "gi.vpl.clamp", "Bound", "", 0.0f, 100.0f, 1.0f,
+        "Distance below which a virtual light counts as this far, over the mean distance between virtual lights."),
+    TYNDALL_FLOAT(VplSettings, relaxed, "gi.vpl.relaxed", "Relaxed bound", "", 1.0f, 1000.0f, 4.0f,
+                  "Traced compensation gathers with a bound at so many times less distance."),
+    TYNDALL_FLOAT(
+        VplSettings, roughness, "gi.vpl.roughness", "Least roughness", "", 0.0f, 1.0f, 0.4f,
+        "Smoother surfaces reflect virtual lights as if they were this rough: else each light is a spot."),
+    TYNDALL_BOOL(VplSettings, fromSurfaces, "gi.vpl.surfaces", "On surfaces", true,
+                 "Virtual lights on surfaces."),
+    TYNDALL_BOOL(VplSettings, fromMedia, "gi.vpl.media", "In media", true,
+                 "Virtual lights in media."),
+    TYNDALL_BOOL(
+        VplSettings, keep, "gi.vpl.keep", "Keep walks", true,
+        "Walks and maps are kept while nothing has changed; off: made anew each frame, to be timed."),
+};
+
+constexpr PresetEntry kVplPresets[] = {
+    {Quality::Low, "gi.vpl.walks", "64"},      {Quality::Low, "gi.vpl.classes", "16"},
+    {Quality::Low, "gi.vpl.mapSide", "32"},    {Quality::Low, "gi.vpl.march", "quarter"},
+    {Quality::Medium, "gi.vpl.walks", "128"},  {Quality::Medium, "gi.vpl.classes", "8"},
+    {Quality::Medium, "gi.vpl.mapSide", "48"}, {Quality::Medium, "gi.vpl.march", "half"},
+    {Quality::High, "gi.vpl.walks", "256"},    {Quality::High, "gi.vpl.classes", "8"},
+    {Quality::High, "gi.vpl.mapSide", "64"},   {Quality::High, "gi.vpl.march", "half"},
+    {Quality::Ultra, "gi.vpl.walks", "512"},   {Quality::Ultra, "gi.vpl.classes", "4"},
+    {Quality::Ultra, "gi.vpl.mapSide", "128"}, {Quality::Ultra, "gi.vpl.march", "full"},
+};
+
+} // namespace
+
+std::span<const SettingDesc> vplSettings() { return kVplSettings; }
+std::span<const PresetEntry> vplPresets() { return kVplPresets; }
+
+} // namespace tyndall::volumetric_gi

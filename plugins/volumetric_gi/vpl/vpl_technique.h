@@ -1,0 +1,35 @@
+#pragma once
+// Instant multiple scattering (Engelhardt, Novák and Dachsbacher 2010): virtual point lights of random walks through surfaces and media, gathered on
+// surfaces and along eye rays, with what their bound takes away. docs/techniques/vpl.md tells how.
+
+#include <string>
+#include <vector>
+
+#include "volumetric_gi/vpl/traced_scene.h"
+#include "volumetric_gi/vpl/vpl_gather.h"
+#include "volumetric_gi/vpl/vpl_settings.h"
+
+namespace tyndall::volumetric_gi {
+
+class VplTechnique {
+public:
+    [[nodiscard]] VplSettings& settings() { return settings_; }
+    /// Light of virtual lights on surfaces and in media, as far as `inputs.terms` asks for it.
+    plugin::FrameOutputs addPasses(fg::FrameGraph& graph, const plugin::FrameInputs& inputs,
+                                   plugin::Host& host);
+
+private:
+    void makeLights(const plugin::FrameInputs& inputs);
+    [[nodiscard]] gpu::VplParams params(const plugin::FrameInputs& inputs) const;
+    [[nodiscard]] double clampDistance() const;
+
+    VplSettings settings_{};
+    TracedScene scene_;
+    VplSet set_;
+    std::vector<uint32_t> maps_;
+    std::vector<vec4> planes_;
+    uint64_t lightsKey_ = 0, planesKey_ = 0;
+    std::string said_;
+};
+
+} // namespace tyndall::volumetric_gi

@@ -1,0 +1,38 @@
+// Virtual point lights: buffers `VplLights`, `VplWalks`, `VplMaps` and `VplPlanes`, and the parameters of who gathers them.
+#ifndef TYNDALL_SHARED_VPL_H
+#define TYNDALL_SHARED_VPL_H
+#include "shared/types.h"
+TYNDALL_SHARED_BEGIN
+
+TYNDALL_CONST uint kVplNothing = 0xffffffffu; // in a map: nothing is seen in this direction
+
+struct VplData {
+    vec4 position; // render space; w: -1 on a surface; else the phase function's kind
+    vec4 normal;   // of the facet, unit, on the side that light came from; w: roughness
+    vec4 shading;  // shading normal, unit; w: weight of the dielectric's coat
+    vec4 travel;   // unit, of the light that arrives; w: parameter g of the phase function
+    vec4 power;    // watts over all walks: on a surface what arrives, in a medium what is scattered; w: metres to the nearest surface that the light sees
+    vec4 base;     // base colour; w: metallic
+};
+
+struct VplParams {
+    uint lightCount;
+    uint walkCount;
+    uint classes;       // walks with equal number modulo this are gathered together, by one pixel or at one point of a ray; 1: all
+    uint mapSide;       // texels along an edge of a visibility map; 0: nothing is hidden
+    float clampSquared; // m²: 1/b
+    float leastRoughness; // of virtual lights and of what they shine on
+    uint compensation;  // kVplClamped and so on
+    uint lightsOfScene; // for compensation: how many there are
+    uint factor;        // pixels along an edge of the squares that have one ray
+    uint seed;
+    float relaxed;      // the second bound over the first, for compensation
+    uint padding0;
+};
+
+TYNDALL_CONST uint kVplClamped = 0u;    // what the bound takes away is missing
+TYNDALL_CONST uint kVplClosedForm = 1u; // as if light were the same all around
+TYNDALL_CONST uint kVplTraced = 2u;     // from one point near by for each that gathers
+
+TYNDALL_SHARED_END
+#endif
