@@ -18,15 +18,15 @@ struct VplData {
 struct VplParams {
     uint lightCount;
     uint walkCount;
-    uint classes;       // walks with equal number modulo this are gathered together, by one pixel or at one point of a ray; 1: all
-    uint mapSide;       // texels along an edge of a visibility map; 0: nothing is hidden
-    float clampSquared; // m²: 1/b
+    uint classes;        // walks with equal number modulo this are gathered together, at one point of a ray; 1: all
+    uint surfaceClasses; // the same for a surface
+    uint mapSide;        // texels along an edge of a visibility map; 0: nothing is hidden
+    uint compensation;   // kVplClamped and so on
+    uint lightsOfScene;  // that compensation gathers straight
+    float relaxed;       // the bound's distance over that of the bound with which compensation gathers
+    float clampSquared;  // m²: 1/b; where light or receiver are in a medium
+    float surfaceClampSquared; // m²: 1/b from surface to surface
     float leastRoughness; // of virtual lights and of what they shine on
-    uint compensation;  // kVplClamped and so on
-    uint lightsOfScene; // for compensation: how many there are
-    uint factor;        // pixels along an edge of the squares that have one ray
-    uint seed;
-    float relaxed;      // the second bound over the first, for compensation
     uint padding0;
 };
 

@@ -48,6 +48,102 @@ fg::BufferHandle addUpload(fg::FrameGraph& graph, const char* name, const void* 
         .buffer;
 }
 
+/// What every pass that gathers reads.
+struct GatherData {
+    ViewResources view;
+    GBuffer gbuffer;
+    LightResources sceneLights;
+    MediaResources media;
+    VplBuffers lights;
+    gpu::VplParams params;
+    gpu::MarchParams march;
+    fg::TextureHandle transmittance, coarse[2], result[2];
+};
+
+void declare(fg::Builder& builder, GatherData& data, const plugin::FrameInputs& inputs,
+             const VplBuffers& lights, const VplGather& gather, int factor) {
+    data.view = inputs.view;
+    if (inputs.media.count > 0) {
+        data.media = readMedia(builder, inputs.media);
+        data.sceneLights = readLights(builder, inputs.lights);
+    }
+    data.lights = read(builder, lights);
+    data.params = gather.params;
+    data.march = inputs.march;
+    data.march.factor = uint32_t(factor);
+}
+
+void readSurfaces(fg::Builder& builder, GatherData& data, const plugin::FrameInputs& inputs) {
+    data.gbuffer.depth = builder.read(inputs.gbuffer.depth);
+    data.gbuffer.normal = builder.read(inputs.gbuffer.normal);
+    data.gbuffer.base = builder.read(inputs.gbuffer.base);
+    data.gbuffer.material = builder.read(inputs.gbuffer.material);
+}
+
+fg::TextureDesc picture(const plugin::FrameInputs& inputs, int factor) {
+    return fg::texture2D(fg::Format::RGBA32F, (inputs.view.width + factor - 1) / factor,
+                         (inputs.view.height + factor - 1) / factor);
+}
+
+fg::ComputeCommand begin(const GatherData& data, fg::PassContext& context, const char* shader) {
+    const bool media = data.media.count > 0;
+    auto command = context.compute(
+        shader,
+        {{"MEDIA", media},
+         {"PHASE_GROUPS", media ? int32_t(data.media.phaseGroups) : 1},
+         {"MEDIA_KINDS", media ? mediaKinds(data.media, true) : 0},
+         {"SOFT_SHADOWS",
+          0}, // of lights that compensation gathers: what they light is spread anyway
+         {"COMPENSATION", int32_t(media && data.params.compensation == gpu::kVplTraced ? 2 : 0)}});
+    bindView(command, data.view);
+    if (media) {
+        bindLights(command, data.sceneLights);
+        bindMedia(command, data.media);
+    }
+    bindVpls(command, data.lights, data.params).params(data.march);
+    return command;
+}
+
+void bindSurfaces(fg::ComputeCommand& command, const GBuffer& gbuffer) {
+    command.bind("gbufferDepth", gbuffer.depth)
+        .bind("gbufferNormal", gbuffer.normal)
+        .bind("gbufferBase", gbuffer.base)
+        .bind("gbufferMaterial", gbuffer.material);
+}
+
+/// Light that media scatter to the eye: a ray for a square of pixels or, from these `rays`, for every pixel.
+fg::TextureHandle addMarch(fg::FrameGraph& graph, const plugin::FrameInputs& inputs,
+                           const VplBuffers& lights, const VplGather& gather,
+                           fg::TextureHandle rays) {
+    const int factor = rays ? 1 : gather.mediaFactor;
+    return graph
+        .addPass<GatherData>(
+            rays ? "gi.vpl.upsample" : "gi.vpl.march",
+            [&](fg::Builder& builder, GatherData& data) {
+                if (inputs.media.count == 0 || !inputs.transmittance)
+                    return builder.skip("no medium in view");
+                declare(builder, data, inputs, lights, gather, gather.mediaFactor);
+                data.gbuffer.depth = builder.read(inputs.gbuffer.depth);
+                if (rays) {
+                    data.transmittance = builder.read(inputs.transmittance);
+                    data.coarse[0] = builder.read(rays);
+                }
+                data.result[0] =
+                    builder.create(factor == 1 ? "gi.vpl.inScatter" : "gi.vpl.coarse.inScatter",
+                                   picture(inputs, factor));
+            },
+            [](const GatherData& data, fg::PassContext& context) {
+                auto command = begin(data, context,
+                                     data.coarse[0] ? "gi/vpl/upsample.comp" : "gi/vpl/march.comp");
+                command.bind("depth", data.gbuffer.depth).bind("inScatter", data.result[0]);
+                if (data.coarse[0])
+                    command.bind("transmittance", data.transmittance)
+                        .bind("coarseInScatter", data.coarse[0]);
+                command.dispatchOver(data.result[0]);
+            })
+        .result[0];
+}
+
 } // namespace
 
 VplBuffers addVplUpload(fg::FrameGraph& graph, const VplUpload& upload) {
@@ -62,96 +158,47 @@ VplBuffers addVplUpload(fg::FrameGraph& graph, const VplUpload& upload) {
 }
 
 fg::TextureHandle addVplSurfaces(fg::FrameGraph& graph, const plugin::FrameInputs& inputs,
-                                 const VplBuffers& lights, const gpu::VplParams& params) {
-    struct Data {
-        ViewResources view;
-        GBuffer gbuffer;
-        MediaResources media;
-        VplBuffers lights;
-        fg::TextureHandle radiance;
-        gpu::VplParams params;
-    };
+                                 const VplBuffers& lights, const VplGather& gather) {
+    const GatherData& squares = graph.addPass<GatherData>(
+        "gi.vpl.surfaces",
+        [&](fg::Builder& builder, GatherData& data) {
+            declare(builder, data, inputs, lights, gather, gather.surfaceFactor);
+            readSurfaces(builder, data, inputs);
+            const fg::TextureDesc desc = picture(inputs, gather.surfaceFactor);
+            data.result[0] = builder.create("gi.vpl.diffuse", desc);
+            data.result[1] = builder.create("gi.vpl.specular", desc);
+        },
+        [](const GatherData& data, fg::PassContext& context) {
+            auto command = begin(data, context, "gi/vpl/surfaces.comp");
+            bindSurfaces(command, data.gbuffer);
+            command.bind("diffuse", data.result[0])
+                .bind("specular", data.result[1])
+                .dispatchOver(data.result[0]);
+        });
     return graph
-        .addPass<Data>(
-            "gi.vpl.surfaces",
-            [&](fg::Builder& builder, Data& data) {
-                data.view = inputs.view;
-                data.gbuffer.depth = builder.read(inputs.gbuffer.depth);
-                data.gbuffer.normal = builder.read(inputs.gbuffer.normal);
-                data.gbuffer.base = builder.read(inputs.gbuffer.base);
-                data.gbuffer.material = builder.read(inputs.gbuffer.material);
-                if (inputs.media.count > 0) data.media = readMedia(builder, inputs.media);
-                data.lights = read(builder, lights);
-                data.radiance = builder.create(
-                    "gi.vpl.surfaceRadiance",
-                    fg::texture2D(fg::Format::RGBA32F, inputs.view.width, inputs.view.height));
-                data.params = params;
+        .addPass<GatherData>(
+            "gi.vpl.upsampleSurfaces",
+            [&](fg::Builder& builder, GatherData& data) {
+                declare(builder, data, inputs, lights, gather, gather.surfaceFactor);
+                readSurfaces(builder, data, inputs);
+                for (int i = 0; i < 2; ++i) data.coarse[i] = builder.read(squares.result[i]);
+                data.result[0] = builder.create("gi.vpl.surfaceRadiance", picture(inputs, 1));
             },
-            [](const Data& data, fg::PassContext& context) {
-                const bool media = data.media.count > 0;
-                auto command = context.compute(
-                    "gi/vpl/surfaces.comp",
-                    {{"MEDIA", media}, {"MEDIA_KINDS", media ? mediaKinds(data.media, false) : 0}});
-                bindView(command, data.view);
-                if (media) bindMedia(command, data.media);
-                bindVpls(command, data.lights, data.params)
-                    .bind("gbufferDepth", data.gbuffer.depth)
-                    .bind("gbufferNormal", data.gbuffer.normal)
-                    .bind("gbufferBase", data.gbuffer.base)
-                    .bind("gbufferMaterial", data.gbuffer.material)
-                    .bind("surfaceRadiance", data.radiance)
-                    .dispatchOver(data.radiance);
+            [](const GatherData& data, fg::PassContext& context) {
+                auto command = begin(data, context, "gi/vpl/upsample_surfaces.comp");
+                bindSurfaces(command, data.gbuffer);
+                command.bind("diffuse", data.coarse[0])
+                    .bind("specular", data.coarse[1])
+                    .bind("surfaceRadiance", data.result[0])
+                    .dispatchOver(data.result[0]);
             })
-        .radiance;
+        .result[0];
 }
 
 fg::TextureHandle addVplMedia(fg::FrameGraph& graph, const plugin::FrameInputs& inputs,
-                              const VplBuffers& lights, const gpu::VplParams& params) {
-    struct Data {
-        ViewResources view;
-        LightResources sceneLights;
-        MediaResources media;
-        VplBuffers lights;
-        fg::TextureHandle depth, inScatter;
-        gpu::VplParams params;
-        gpu::MarchParams march;
-    };
-    return graph
-        .addPass<Data>(
-            "gi.vpl.march",
-            [&](fg::Builder& builder, Data& data) {
-                if (inputs.media.count == 0 || !inputs.transmittance)
-                    return builder.skip("no medium in view");
-                data.view = inputs.view;
-                data.sceneLights = readLights(builder, inputs.lights);
-                data.media = readMedia(builder, inputs.media);
-                data.lights = read(builder, lights);
-                data.depth = builder.read(inputs.gbuffer.depth);
-                data.inScatter = builder.create(
-                    "gi.vpl.inScatter",
-                    fg::texture2D(fg::Format::RGBA32F, inputs.view.width, inputs.view.height));
-                data.params = params;
-                data.march = inputs.march;
-                data.march.factor = 1;
-            },
-            [](const Data& data, fg::PassContext& context) {
-                auto command = context.compute(
-                    "gi/vpl/march.comp",
-                    {{"PHASE_GROUPS", int32_t(data.media.phaseGroups)},
-                     {"MEDIA_KINDS", mediaKinds(data.media, true)},
-                     {"SOFT_SHADOWS", data.sceneLights.softShadows},
-                     {"COMPENSATION",
-                      int32_t(data.params.compensation == gpu::kVplTraced ? 2 : 0)}});
-                bindView(command, data.view);
-                bindLights(command, data.sceneLights);
-                bindMedia(command, data.media);
-                bindVpls(command, data.lights, data.params)
-                    .params(data.march)
-                    .bind("depth", data.depth)
-                    .bind("inScatter", data.inScatter)
-                    .dispatchOver(data.inScatter);
-            })
-        .inScatter;
+                              const VplBuffers& lights, const VplGather& gather) {
+    const fg::TextureHandle rays = addMarch(graph, inputs, lights, gather, {});
+    return !rays || gather.mediaFactor == 1 ? rays : addMarch(graph, inputs, lights, gather, rays);
 }
 
 } // namespace tyndall::volumetric_gi

@@ -19,17 +19,22 @@ struct VplUpload {
     uint64_t lightsKey = 0, planesKey = 0;
 };
 
+/// How lights are gathered.
+struct VplGather {
+    gpu::VplParams params{};
+    int surfaceFactor = 1, mediaFactor = 1; // pixels along an edge of the squares that gather once
+};
+
 [[nodiscard]] VplBuffers addVplUpload(fg::FrameGraph& graph, const VplUpload& upload);
 
 /// View-sized RGBA32F nits that leave surfaces towards the eye.
 [[nodiscard]] fg::TextureHandle addVplSurfaces(fg::FrameGraph& graph,
                                                const plugin::FrameInputs& inputs,
-                                               const VplBuffers& lights,
-                                               const gpu::VplParams& params);
+                                               const VplBuffers& lights, const VplGather& gather);
 
 /// View-sized RGBA32F nits that reach the eye from media. Skipped where there are none.
 [[nodiscard]] fg::TextureHandle addVplMedia(fg::FrameGraph& graph,
                                             const plugin::FrameInputs& inputs,
-                                            const VplBuffers& lights, const gpu::VplParams& params);
+                                            const VplBuffers& lights, const VplGather& gather);
 
 } // namespace tyndall::volumetric_gi

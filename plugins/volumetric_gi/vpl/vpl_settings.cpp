@@ -12,7 +12,9 @@ const SettingDesc kVplSettings[] = {
         "Random walks from the lights; each leaves a virtual light wherever it is scattered."),
     TYNDALL_INT(
         VplSettings, classes, "gi.vpl.classes", "Classes", "", 1, 1024, 8,
-        "A pixel, and a point along its ray, gathers one in so many walks; its neighbours gather others."),
+        "A point along a ray through media gathers one in so many walks; the points before and behind it gather others."),
+    TYNDALL_INT(VplSettings, surfaceClasses, "gi.vpl.surfaceClasses", "Classes on surfaces", "", 1,
+                1024, 1, "A surface gathers one in so many walks, its neighbours others; 1: all."),
     TYNDALL_INT(VplSettings, mapSide, "gi.vpl.mapSide", "Visibility map", "texels", 0, 512, 64,
                 "Side of a virtual light's map of what it sees; 0: nothing hides it."),
     TYNDALL_ENUM(
@@ -21,17 +23,23 @@ const SettingDesc kVplSettings[] = {
     TYNDALL_ENUM(
         VplSettings, march, "gi.vpl.march", "March resolution", kMarchNames, 1,
         "Rays along which media show virtual lights: for every pixel, or for squares of 2, 4 or 8 pixels a side."),
+    TYNDALL_ENUM(
+        VplSettings, surfaces, "gi.vpl.surfaces.resolution", "Surface resolution", kMarchNames, 1,
+        "Surfaces that gather virtual lights: of every pixel, or of one pixel of squares of 2, 4 or 8 pixels a side."),
     TYNDALL_FLOAT(
         VplSettings, clamp, "gi.vpl.clamp", "Bound", "", 0.0f, 100.0f, 1.0f,
         "Distance below which a virtual light counts as this far, over the mean distance between virtual lights."),
+    TYNDALL_FLOAT(VplSettings, surfaceClamp, "gi.vpl.surfaceClamp", "Bound between surfaces", "",
+                  0.0f, 100.0f, 0.5f,
+                  "The same for light from surface to surface, where nothing makes up for it."),
     TYNDALL_FLOAT(VplSettings, relaxed, "gi.vpl.relaxed", "Relaxed bound", "", 1.0f, 1000.0f, 4.0f,
                   "Traced compensation gathers with a bound at so many times less distance."),
     TYNDALL_FLOAT(
         VplSettings, roughness, "gi.vpl.roughness", "Least roughness", "", 0.0f, 1.0f, 0.4f,
         "Smoother surfaces reflect virtual lights as if they were this rough: else each light is a spot."),
-    TYNDALL_BOOL(VplSettings, fromSurfaces, "gi.vpl.surfaces", "On surfaces", true,
+    TYNDALL_BOOL(VplSettings, fromSurfaces, "gi.vpl.fromSurfaces", "On surfaces", true,
                  "Virtual lights on surfaces."),
-    TYNDALL_BOOL(VplSettings, fromMedia, "gi.vpl.media", "In media", true,
+    TYNDALL_BOOL(VplSettings, fromMedia, "gi.vpl.fromMedia", "In media", true,
                  "Virtual lights in media."),
     TYNDALL_BOOL(
         VplSettings, keep, "gi.vpl.keep", "Keep walks", true,
@@ -39,14 +47,26 @@ const SettingDesc kVplSettings[] = {
 };
 
 constexpr PresetEntry kVplPresets[] = {
-    {Quality::Low, "gi.vpl.walks", "64"},      {Quality::Low, "gi.vpl.classes", "16"},
-    {Quality::Low, "gi.vpl.mapSide", "32"},    {Quality::Low, "gi.vpl.march", "quarter"},
-    {Quality::Medium, "gi.vpl.walks", "128"},  {Quality::Medium, "gi.vpl.classes", "8"},
-    {Quality::Medium, "gi.vpl.mapSide", "48"}, {Quality::Medium, "gi.vpl.march", "half"},
-    {Quality::High, "gi.vpl.walks", "256"},    {Quality::High, "gi.vpl.classes", "8"},
-    {Quality::High, "gi.vpl.mapSide", "64"},   {Quality::High, "gi.vpl.march", "half"},
-    {Quality::Ultra, "gi.vpl.walks", "512"},   {Quality::Ultra, "gi.vpl.classes", "4"},
-    {Quality::Ultra, "gi.vpl.mapSide", "128"}, {Quality::Ultra, "gi.vpl.march", "full"},
+    {Quality::Low, "gi.vpl.surfaces.resolution", "quarter"},
+    {Quality::Medium, "gi.vpl.surfaces.resolution", "half"},
+    {Quality::High, "gi.vpl.surfaces.resolution", "half"},
+    {Quality::Ultra, "gi.vpl.surfaces.resolution", "full"},
+    {Quality::Low, "gi.vpl.walks", "64"},
+    {Quality::Low, "gi.vpl.classes", "16"},
+    {Quality::Low, "gi.vpl.mapSide", "32"},
+    {Quality::Low, "gi.vpl.march", "quarter"},
+    {Quality::Medium, "gi.vpl.walks", "128"},
+    {Quality::Medium, "gi.vpl.classes", "8"},
+    {Quality::Medium, "gi.vpl.mapSide", "48"},
+    {Quality::Medium, "gi.vpl.march", "half"},
+    {Quality::High, "gi.vpl.walks", "256"},
+    {Quality::High, "gi.vpl.classes", "8"},
+    {Quality::High, "gi.vpl.mapSide", "64"},
+    {Quality::High, "gi.vpl.march", "half"},
+    {Quality::Ultra, "gi.vpl.walks", "512"},
+    {Quality::Ultra, "gi.vpl.classes", "4"},
+    {Quality::Ultra, "gi.vpl.mapSide", "128"},
+    {Quality::Ultra, "gi.vpl.march", "full"},
 };
 
 } // namespace

@@ -41,32 +41,41 @@ void VplTechnique::makeLights(const plugin::FrameInputs& inputs) {
     lightsKey_ = key;
 }
 
-/// gi.vpl.clamp times the mean distance between virtual lights: (V/M)^(1/3) (transport.md, 5.1 i).
-double VplTechnique::clampDistance() const {
+/// Between the virtual lights of so many frames, metres: (V/M)^(1/3) (transport.md, 5.1 i).
+double VplTechnique::meanDistance(uint32_t frames) const {
     Bounds around;
     for (const dvec3& position : set_.positions) around.include(position);
     if (around.empty()) return 0;
     const dvec3 extent = glm::max(around.extent(), 1e-3 * glm::length(around.extent()));
     const double volume = extent.x * extent.y * extent.z;
-    return double(settings_.clamp) * std::cbrt(volume / double(set_.positions.size()));
+    return std::cbrt(volume / double(set_.positions.size()) / double(frames));
 }
 
-gpu::VplParams VplTechnique::params(const plugin::FrameInputs& inputs) const {
-    gpu::VplParams params{};
+VplGather VplTechnique::gather(const plugin::FrameInputs& inputs) const {
+    VplGather gather;
+    gpu::VplParams& params = gather.params;
     params.lightCount = uint32_t(set_.lights.size());
     params.walkCount = uint32_t(set_.walks.size()) - 1;
-    const double least = double(params.lightCount) * kSegments / kMostRounds;
-    params.classes = uint32_t(std::clamp(std::max(double(settings_.classes), std::ceil(least)), 1.0,
-                                         double(std::max(params.walkCount, 1u))));
+    const auto classes = [&](int32_t wanted, double points) {
+        const double least = double(params.lightCount) * points / kMostRounds;
+        return uint32_t(std::clamp(std::max(double(wanted), std::ceil(least)), 1.0,
+                                   double(std::max(params.walkCount, 1u))));
+    };
+    params.classes = classes(settings_.classes, kSegments);
+    params.surfaceClasses = classes(settings_.surfaceClasses, 1);
     params.mapSide = maps_.empty() ? 0 : uint32_t(settings_.mapSide);
-    const double reach = clampDistance();
-    params.clampSquared = float(reach * reach);
+    // The bound follows from all lights of an average: what it takes away tends to nothing as frames come.
+    const double mean = meanDistance(converges(inputs) ? inputs.view.data.frameIndex + 1 : 1);
+    const auto squared = [](double x) { return float(x * x); };
+    params.clampSquared = squared(mean * double(settings_.clamp));
+    params.surfaceClampSquared = squared(mean * double(settings_.surfaceClamp));
     params.leastRoughness = settings_.roughness;
     params.compensation = uint32_t(settings_.compensation);
     params.lightsOfScene = inputs.lights.lightCount;
-    params.factor = 1u << uint32_t(settings_.march);
     params.relaxed = settings_.relaxed;
-    return params;
+    gather.mediaFactor = 1 << settings_.march;
+    gather.surfaceFactor = 1 << settings_.surfaces;
+    return gather;
 }
 
 plugin::FrameOutputs VplTechnique::addPasses(fg::FrameGraph& graph,
@@ -82,9 +91,9 @@ plugin::FrameOutputs VplTechnique::addPasses(fg::FrameGraph& graph,
         addVplUpload(graph, {&set_, &maps_, &planes_, lightsKey_, planesKey_});
     plugin::FrameOutputs outputs;
     if (inputs.terms & kIndirectOnSurfaces)
-        outputs.surfaceRadiance = addVplSurfaces(graph, inputs, buffers, params(inputs));
+        outputs.surfaceRadiance = addVplSurfaces(graph, inputs, buffers, gather(inputs));
     if (inputs.terms & ~kIndirectOnSurfaces)
-        outputs.inScatter = addVplMedia(graph, inputs, buffers, params(inputs));
+        outputs.inScatter = addVplMedia(graph, inputs, buffers, gather(inputs));
     return outputs;
 }
 

@@ -20,8 +20,8 @@ public:
 
 private:
     void makeLights(const plugin::FrameInputs& inputs);
-    [[nodiscard]] gpu::VplParams params(const plugin::FrameInputs& inputs) const;
-    [[nodiscard]] double clampDistance() const;
+    [[nodiscard]] VplGather gather(const plugin::FrameInputs& inputs) const;
+    [[nodiscard]] double meanDistance(uint32_t frames) const;
 
     VplSettings settings_{};
     TracedScene scene_;

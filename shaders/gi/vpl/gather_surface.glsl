@@ -1,0 +1,94 @@
+// Light of virtual point lights on a surface.
+// MEDIA: 0: there are none; 1: they attenuate it. COMPENSATION: 2: what the bound takes away from the light of media near by is traced.
+#if MEDIA
+#include "gi/vpl/near_medium.glsl"
+#else
+#include "common/random.glsl"
+#include "gi/vpl/lights.glsl"
+#endif
+#include "shared/gbuffer.h"
+
+uniform sampler2D gbufferDepth;
+uniform sampler2D gbufferNormal;
+uniform sampler2D gbufferBase;
+uniform sampler2D gbufferMaterial;
+
+struct Receiver {
+    vec3 position;
+    vec3 facet;
+    vec3 normal;
+    vec3 toEye;
+    Brdf brdf;
+};
+
+/// False where there is no surface that light falls on.
+bool receiverAt(ivec2 texel, out Receiver r) {
+    float depth = texelFetch(gbufferDepth, texel, 0).r;
+    vec4 material = texelFetch(gbufferMaterial, texel, 0);
+    if (!(depth > 0.0) || (uint(material.w * 65535.0 + 0.5) & kGBufferUnlit) != 0u) return false;
+    vec2 pixel = vec2(texel) + 0.5;
+    vec4 normals = texelFetch(gbufferNormal, texel, 0);
+    vec4 base = texelFetch(gbufferBase, texel, 0);
+    r.position = renderPosition(pixel, depth);
+    r.toEye = -cameraRay(pixel).direction;
+    r.normal = octahedralDecodeUnorm(normals.xy);
+    r.facet = octahedralDecodeUnorm(normals.zw);
+    r.brdf = makeBrdf(base.rgb, base.w, max(material.x, vpl.leastRoughness), material.y);
+    return true;
+}
+
+/// What leaves a surface towards the eye: by the base, over the base's colour, which neighbours do not share; and by the microfacets. Nits.
+struct SurfaceLight {
+    vec3 diffuse;
+    vec3 specular;
+};
+
+void addLight(inout SurfaceLight sum, Receiver r, vec3 direction, vec3 irradiance) {
+    Brdf white = r.brdf;
+    white.baseColor = vec3(1.0);
+    sum.diffuse += irradiance * evaluateBrdf(white, r.normal, r.toEye, direction).diffuse;
+    sum.specular += irradiance * evaluateBrdf(r.brdf, r.normal, r.toEye, direction).specular;
+}
+
+void addLightFrom(inout SurfaceLight sum, uint light, Receiver r) {
+    vec3 way = vplLights[light].position.xyz - r.position;
+    float squared = dot(way, way);
+    float distance = sqrt(squared);
+    vec3 direction = way / max(distance, 1e-30);
+    float facing = dot(r.facet, direction);
+    float cosine = dot(r.normal, direction);
+    if (!(facing > 0.0) || !(cosine > 0.0)) return;
+    vec3 intensity = vplIntensity(light, -direction);
+    if (!(maximumOf(intensity) > 0.0) || !vplSees(light, r.position, -direction, distance, r.facet)) return;
+    // min(G, b)/G of 1/d²; G has both facets' cosines.
+    bool onSurface = vplLights[light].position.w < 0.0;
+    float cosines = facing * (onSurface ? dot(vplLights[light].normal.xyz, -direction) : 1.0);
+    vec3 irradiance = intensity * (cosine / max(squared, cosines * (onSurface ? vpl.surfaceClampSquared : vpl.clampSquared)));
+#if MEDIA
+    irradiance *= exp(-opticalDepthAlong(r.position, direction, distance));
+#endif
+    addLight(sum, r, direction, irradiance);
+}
+
+/// Of the walks from `number` on, every `stride`-th.
+SurfaceLight gatherSurface(Receiver r, uint number, uint stride, uvec2 pixel) {
+    SurfaceLight sum = SurfaceLight(vec3(0.0), vec3(0.0));
+    for (uint walk = number; walk < vpl.walkCount; walk += stride)
+        for (uint light = vplWalks[walk]; light < vplWalks[walk + 1u]; ++light) addLightFrom(sum, light, r);
+    sum.diffuse *= float(stride);
+    sum.specular *= float(stride);
+#if MEDIA && COMPENSATION == 2
+    // Evenly in what a facet receives; the bound reaches as far as its cosine lets it.
+    vec2 u = pixelNoise2(pixel, 13u);
+    float z = sqrt(1.0 - u.x);
+    float angle = 2.0 * kPi * u.y;
+    vec3 direction = frameAround(r.facet) * vec3(sqrt(u.x) * cos(angle), sqrt(u.x) * sin(angle), z);
+    float cosine = dot(r.normal, direction);
+    if (cosine > 0.0) {
+        vec3 noise = vec3(pixelNoise(pixel, 25u), pixelNoise2(pixel, 14u));
+        vec3 near = nearMedium(number + uint(noise.x * float(vpl.classes)), r.position, direction, sqrt(vpl.clampSquared * z), noise, pixelNoise(pixel, 26u));
+        addLight(sum, r, direction, near * (kPi * cosine / max(z, 1e-3)));
+    }
+#endif
+    return sum;
+}

@@ -1,0 +1,55 @@
+// What the bound on the geometry term takes away from the light of media near by: followed one step, to a point that gathers in turn, all lights
+// of the scene straight and one class of walks (validation: compensation algebra; transport.md 5.1 g, h).
+#ifndef TYNDALL_GI_VPL_NEAR_MEDIUM
+#define TYNDALL_GI_VPL_NEAR_MEDIUM
+#define MARCH_PHASE_GROUPS PHASE_GROUPS
+#include "common/random.glsl"
+#include "media/march.glsl"
+#include "gi/vpl/lights.glsl"
+
+/// Light of one virtual light that a segment's media scatter against `direction`: nits, before the segment's own extinction.
+vec3 lightInMedium(uint light, vec3 position, vec3 direction, Segment s, float clampSquared) {
+    vec3 way = vplLights[light].position.xyz - position;
+    float squared = dot(way, way);
+    float distance = sqrt(squared);
+    vec3 towards = distance > 0.0 ? way / distance : direction;
+    vec3 intensity = vplIntensity(light, -towards);
+    if (!(maximumOf(intensity) > 0.0) || !vplSees(light, position, -towards, distance, vec3(0.0))) return vec3(0.0);
+    bool onSurface = vplLights[light].position.w < 0.0;
+    float cosines = onSurface ? dot(vplLights[light].normal.xyz, -towards) : 1.0;
+    float perArea = 1.0 / max(max(squared, cosines * clampSquared), 1e-30);
+    vec3 depth = opticalDepthAlong(position, towards, distance);
+    return scatteredLight(s, dot(towards, direction), depth) * intensity * perArea;
+}
+
+vec3 walksInMedium(uint number, vec3 position, vec3 direction, Segment s, float clampSquared) {
+    vec3 sum = vec3(0.0);
+    for (uint walk = number % vpl.classes; walk < vpl.walkCount; walk += vpl.classes)
+        for (uint light = vplWalks[walk]; light < vplWalks[walk + 1u]; ++light) sum += lightInMedium(light, position, direction, s, clampSquared);
+    return sum * float(vpl.classes);
+}
+
+/// A segment without length at a point: scattering coefficients in place of their integrals.
+Segment pointSegment(Ray ray, float at, float scale) {
+    float size = max(1e-4 * scale, 1e-6 * (at + 1.0));
+    Segment s = marchSegment(Ray(ray.origin + ray.direction * (at - 0.5 * size), ray.direction), 0.0, size);
+    for (int g = 0; g < MARCH_PHASE_GROUPS; ++g) s.scattering[g] /= s.size;
+    s.depth = vec3(0.0);
+    s.start = at;
+    s.size = max(1e-5 * at, 1e-20);
+    return s;
+}
+
+/// ∫ (1 - t²/reach²) · transmittance · light that media scatter towards `position`, over t from 0 to reach along `direction`. The distance is drawn by
+/// the first factor, so that it weighs nothing. What is gathered there has the bound relaxed, and misses what that takes away.
+vec3 nearMedium(uint number, vec3 position, vec3 direction, float reach, vec3 u, float v) {
+    float t = reach * 2.0 * sin(asin(v) / 3.0);
+    Ray ray = Ray(position, direction);
+    Segment there = pointSegment(ray, t, reach);
+    if (!there.scatters) return vec3(0.0);
+    vec3 light = walksInMedium(number, position + direction * t, direction, there, vpl.clampSquared / (vpl.relaxed * vpl.relaxed));
+    light += segmentInScatter(ray, there, vpl.lightsOfScene, u, number);
+    return 2.0 / 3.0 * reach * exp(-opticalDepthAlong(position, direction, t)) * light;
+}
+
+#endif

@@ -1,0 +1,57 @@
+// From the surfaces of surfaces.comp to every pixel: of the four nearest those count that lie in about the same plane and face the same way. A pixel that
+// none of them fits gathers on its own.
+#include "gi/vpl/gather_surface.glsl"
+#include "media/nearest_rays.glsl"
+
+layout(local_size_x = 8, local_size_y = 8) in;
+
+layout(std140) uniform Params { MarchParams params; };
+uniform sampler2D diffuse;
+uniform sampler2D specular;
+layout(rgba32f) writeonly uniform image2D surfaceRadiance;
+
+/// How well the light of one surface stands for another's: 1 for a perfect fit.
+float surfaceLikeness(Receiver r, Receiver other, float distance) {
+    float apart = abs(dot(r.facet, other.position - r.position)) / distance;
+    float facing = max(dot(r.normal, other.normal), 0.0);
+    float f2 = facing * facing;
+    float f4 = f2 * f2;
+    return f4 * f4 / (1.0 + apart / params.depthTolerance);
+}
+
+void main() {
+    ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
+    if (any(greaterThanEqual(pixel, imageSize(surfaceRadiance)))) return;
+    Receiver r;
+    if (!receiverAt(pixel, r)) {
+        imageStore(surfaceRadiance, pixel, vec4(vec3(0.0), 1.0));
+        return;
+    }
+    float distance = max(length(r.position - cameraRay(vec2(pixel) + 0.5).origin), 1e-20);
+    SurfaceLight sum = SurfaceLight(vec3(0.0), vec3(0.0));
+    float total = 0.0;
+    float best = 0.0;
+    if (params.factor > 1u) {
+        for (int i = 0; i < 4; ++i) {
+            NearRay near = nearRay(i, pixel, params, textureSize(diffuse, 0), textureSize(gbufferDepth, 0));
+            Receiver other;
+            if (!receiverAt(near.pixel, other)) continue;
+            float like = surfaceLikeness(r, other, distance);
+            float weight = rayWeight(like, near.share);
+            best = max(best, like);
+            total += weight;
+            sum.diffuse += weight * texelFetch(diffuse, near.coarse, 0).rgb;
+            sum.specular += weight * texelFetch(specular, near.coarse, 0).rgb;
+        }
+        sum.diffuse /= max(total, 1e-30);
+        sum.specular /= max(total, 1e-30);
+        if (best < params.refineWeight) {
+            uint number = uint(pixelNoise(uvec2(pixel), 27u) * float(vpl.classes));
+            sum = gatherSurface(r, number % vpl.classes, vpl.classes, uvec2(pixel));
+        }
+    } else {
+        sum.diffuse = texelFetch(diffuse, pixel, 0).rgb;
+        sum.specular = texelFetch(specular, pixel, 0).rgb;
+    }
+    imageStore(surfaceRadiance, pixel, vec4(r.brdf.baseColor * sum.diffuse + sum.specular, 1.0));
+}
