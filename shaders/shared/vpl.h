@@ -4,6 +4,7 @@
 #include "shared/types.h"
 TYNDALL_SHARED_BEGIN
 
+TYNDALL_CONST uint kVplDepthSteps = 16u; // distances of a map of optical depth
 TYNDALL_CONST uint kVplNothing = 0xffffffffu; // in a map: nothing is seen in this direction
 
 struct VplData {
@@ -27,7 +28,13 @@ struct VplParams {
     float clampSquared;  // m²: 1/b; where light or receiver are in a medium
     float surfaceClampSquared; // m²: 1/b from surface to surface
     float leastRoughness; // of virtual lights and of what they shine on
+    uint depthSide;      // texels along an edge of a light's map of optical depth; 0: grids are marched
+    vec4 gridsMinimum;   // of the box around all grids, render space
+    vec4 gridsMaximum;
+    uint samples;        // points at which a ray through media gathers
     uint padding0;
+    uint padding1;
+    uint padding2;
 };
 
 TYNDALL_CONST uint kVplClamped = 0u;    // what the bound takes away is missing

@@ -8,7 +8,7 @@ namespace {
 
 VplBuffers read(fg::Builder& builder, const VplBuffers& buffers) {
     return {builder.read(buffers.lights), builder.read(buffers.walks), builder.read(buffers.maps),
-            builder.read(buffers.planes)};
+            builder.read(buffers.planes), builder.read(buffers.depths)};
 }
 
 template <typename Command>
@@ -17,7 +17,8 @@ Command& bindVpls(Command& command, const VplBuffers& buffers, const gpu::VplPar
         .bind("VplLights", buffers.lights)
         .bind("VplWalks", buffers.walks)
         .bind("VplMaps", buffers.maps)
-        .bind("VplPlanes", buffers.planes);
+        .bind("VplPlanes", buffers.planes)
+        .bind("VplDepths", buffers.depths);
 }
 
 /// One buffer of CPU data, uploaded where `key` is new. Sizes are rounded up to powers of two, so that few are ever made.
@@ -144,17 +145,61 @@ fg::TextureHandle addMarch(fg::FrameGraph& graph, const plugin::FrameInputs& inp
         .result[0];
 }
 
+/// Maps of the grids' optical depth around each light.
+fg::BufferHandle addDepthMaps(fg::FrameGraph& graph, const plugin::FrameInputs& inputs,
+                              fg::BufferHandle lights, uint64_t key, const gpu::VplParams& params) {
+    struct Data {
+        MediaResources media;
+        fg::BufferHandle lights, depths;
+        gpu::VplParams params;
+    };
+    const size_t texels = size_t(params.lightCount) * params.depthSide * params.depthSide;
+    return graph
+        .addPass<Data>(
+            "gi.vpl.depths",
+            [&](fg::Builder& builder, Data& data) {
+                data.params = params;
+                if (texels > 0) {
+                    data.media = readMedia(builder, inputs.media);
+                    data.lights = builder.read(lights);
+                }
+                const size_t bytes = std::max<size_t>(texels * gpu::kVplDepthSteps * 8, 256);
+                data.depths = builder.create("gi.vpl.depths", fg::BufferDesc{std::bit_ceil(bytes)},
+                                             texels > 0 ? fg::Access::StorageWrite
+                                                        : fg::Access::TransferWrite);
+                builder.cacheBy(key);
+            },
+            [](const Data& data, fg::PassContext& context) {
+                if (data.params.depthSide == 0 || data.params.lightCount == 0)
+                    return context.clearBuffer(data.depths, 0);
+                // Marched in steps even where frames are averaged: a map is not exact anyway.
+                const int32_t kinds =
+                    mediaKinds(data.media, false) & ~int32_t(gpu::kMediaExactGrids);
+                auto command = context.compute("gi/vpl/depth_maps.comp", {{"MEDIA_KINDS", kinds}});
+                bindMedia(command, data.media);
+                command.params(data.params, "Vpl")
+                    .bind("VplLights", data.lights)
+                    .bind("VplDepths", data.depths)
+                    .dispatchOver(data.params.depthSide * data.params.depthSide,
+                                  data.params.lightCount);
+            })
+        .depths;
+}
+
 } // namespace
 
-VplBuffers addVplUpload(fg::FrameGraph& graph, const VplUpload& upload) {
-    const auto bytes = [](const auto& values) { return values.size() * sizeof(values[0]); };
-    const VplSet& set = *upload.set;
-    return {
-        addUpload(graph, "gi.vpl.lights", set.lights.data(), bytes(set.lights), upload.lightsKey),
-        addUpload(graph, "gi.vpl.walks", set.walks.data(), bytes(set.walks), upload.lightsKey),
-        addUpload(graph, "gi.vpl.maps", upload.maps->data(), bytes(*upload.maps), upload.lightsKey),
-        addUpload(graph, "gi.vpl.planes", upload.planes->data(), bytes(*upload.planes),
-                  upload.planesKey)};
+VplBuffers addVplUpload(fg::FrameGraph& graph, const plugin::FrameInputs& inputs,
+                        const VplUpload& upload, const gpu::VplParams& params) {
+    const auto add = [&](const char* name, const auto& values, uint64_t key) {
+        return addUpload(graph, name, values.data(), values.size() * sizeof(values[0]), key);
+    };
+    VplBuffers buffers;
+    buffers.lights = add("gi.vpl.lights", upload.set->lights, upload.lightsKey);
+    buffers.walks = add("gi.vpl.walks", upload.set->walks, upload.lightsKey);
+    buffers.maps = add("gi.vpl.maps", *upload.maps, upload.lightsKey);
+    buffers.planes = add("gi.vpl.planes", *upload.planes, upload.planesKey);
+    buffers.depths = addDepthMaps(graph, inputs, buffers.lights, upload.lightsKey, params);
+    return buffers;
 }
 
 fg::TextureHandle addVplSurfaces(fg::FrameGraph& graph, const plugin::FrameInputs& inputs,

@@ -9,6 +9,7 @@ namespace tyndall::volumetric_gi {
 
 struct VplBuffers {
     fg::BufferHandle lights, walks, maps, planes;
+    fg::BufferHandle depths; // of grids; null: without
 };
 
 /// What goes up; must live until the frame has been executed. `lightsKey`, `planesKey`: of its content.
@@ -25,7 +26,8 @@ struct VplGather {
     int surfaceFactor = 1, mediaFactor = 1; // pixels along an edge of the squares that gather once
 };
 
-[[nodiscard]] VplBuffers addVplUpload(fg::FrameGraph& graph, const VplUpload& upload);
+[[nodiscard]] VplBuffers addVplUpload(fg::FrameGraph& graph, const plugin::FrameInputs& inputs,
+                                      const VplUpload& upload, const gpu::VplParams& params);
 
 /// View-sized RGBA32F nits that leave surfaces towards the eye.
 [[nodiscard]] fg::TextureHandle addVplSurfaces(fg::FrameGraph& graph,

@@ -17,6 +17,11 @@ const SettingDesc kVplSettings[] = {
                 1024, 1, "A surface gathers one in so many walks, its neighbours others; 1: all."),
     TYNDALL_INT(VplSettings, mapSide, "gi.vpl.mapSide", "Visibility map", "texels", 0, 512, 64,
                 "Side of a virtual light's map of what it sees; 0: nothing hides it."),
+    TYNDALL_INT(
+        VplSettings, depthSide, "gi.vpl.depthSide", "Map of optical depth", "texels", 0, 64, 16,
+        "Side of a virtual light's map of the grids' optical depth around it; 0: grids are marched for each light and point."),
+    TYNDALL_INT(VplSettings, samples, "gi.vpl.samples", "Points of a ray", "", 1, 1024, 24,
+                "Points along a ray through media at which virtual lights are gathered."),
     TYNDALL_ENUM(
         VplSettings, compensation, "gi.vpl.compensation", "Compensation", kCompensationNames, 2,
         "What the bound takes away: missing, made up for as if light were even, or gathered from a point near by."),
@@ -47,6 +52,10 @@ const SettingDesc kVplSettings[] = {
 };
 
 constexpr PresetEntry kVplPresets[] = {
+    {Quality::Low, "gi.vpl.samples", "8"},
+    {Quality::Medium, "gi.vpl.samples", "16"},
+    {Quality::High, "gi.vpl.samples", "24"},
+    {Quality::Ultra, "gi.vpl.samples", "32"},
     {Quality::Low, "gi.vpl.surfaces.resolution", "quarter"},
     {Quality::Medium, "gi.vpl.surfaces.resolution", "half"},
     {Quality::High, "gi.vpl.surfaces.resolution", "half"},

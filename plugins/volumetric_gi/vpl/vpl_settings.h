@@ -11,7 +11,8 @@ namespace tyndall::volumetric_gi {
 struct VplSettings {
     int32_t walks;
     int32_t classes, surfaceClasses;
-    int32_t mapSide;
+    int32_t mapSide, depthSide;
+    int32_t samples;
     int32_t compensation;    // kVplClamped and so on
     int32_t march, surfaces; // log2 of pixels along an edge of the squares that gather once
     float clamp, surfaceClamp;

@@ -12,9 +12,6 @@ namespace {
 
 /// Rounds of loops that one invocation of a shader may run: llvmpipe ends them all at 65,535, and each light gathered takes some.
 constexpr double kMostRounds = 16000;
-/// Segments of a ray through media, for that.
-constexpr double kSegments = 64;
-
 bool converges(const plugin::FrameInputs& inputs) {
     return (inputs.view.data.flags & gpu::kViewConverge) != 0;
 }
@@ -61,7 +58,7 @@ VplGather VplTechnique::gather(const plugin::FrameInputs& inputs) const {
         return uint32_t(std::clamp(std::max(double(wanted), std::ceil(least)), 1.0,
                                    double(std::max(params.walkCount, 1u))));
     };
-    params.classes = classes(settings_.classes, kSegments);
+    params.classes = classes(settings_.classes, 2 * double(settings_.samples)); // with compensation
     params.surfaceClasses = classes(settings_.surfaceClasses, 1);
     params.mapSide = maps_.empty() ? 0 : uint32_t(settings_.mapSide);
     // The bound follows from all lights of an average: what it takes away tends to nothing as frames come.
@@ -73,6 +70,15 @@ VplGather VplTechnique::gather(const plugin::FrameInputs& inputs) const {
     params.compensation = uint32_t(settings_.compensation);
     params.lightsOfScene = inputs.lights.lightCount;
     params.relaxed = settings_.relaxed;
+    params.samples = uint32_t(settings_.samples);
+    Bounds grids;
+    for (const reference::MediumSource& medium : scene_.scene().media->media())
+        if (medium.isGrid()) grids.include(medium.bounds());
+    if (!grids.empty() && inputs.media.count > 0) {
+        params.depthSide = uint32_t(settings_.depthSide);
+        params.gridsMinimum = vec4(vec3(grids.minimum), 0);
+        params.gridsMaximum = vec4(vec3(grids.maximum), 0);
+    }
     gather.mediaFactor = 1 << settings_.march;
     gather.surfaceFactor = 1 << settings_.surfaces;
     return gather;
@@ -87,13 +93,14 @@ plugin::FrameOutputs VplTechnique::addPasses(fg::FrameGraph& graph,
         return {};
     }
     makeLights(inputs);
+    const VplGather how = gather(inputs);
     const VplBuffers buffers =
-        addVplUpload(graph, {&set_, &maps_, &planes_, lightsKey_, planesKey_});
+        addVplUpload(graph, inputs, {&set_, &maps_, &planes_, lightsKey_, planesKey_}, how.params);
     plugin::FrameOutputs outputs;
     if (inputs.terms & kIndirectOnSurfaces)
-        outputs.surfaceRadiance = addVplSurfaces(graph, inputs, buffers, gather(inputs));
+        outputs.surfaceRadiance = addVplSurfaces(graph, inputs, buffers, how);
     if (inputs.terms & ~kIndirectOnSurfaces)
-        outputs.inScatter = addVplMedia(graph, inputs, buffers, gather(inputs));
+        outputs.inScatter = addVplMedia(graph, inputs, buffers, how);
     return outputs;
 }
 

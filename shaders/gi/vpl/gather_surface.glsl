@@ -65,7 +65,7 @@ void addLightFrom(inout SurfaceLight sum, uint light, Receiver r) {
     float cosines = facing * (onSurface ? dot(vplLights[light].normal.xyz, -direction) : 1.0);
     vec3 irradiance = intensity * (cosine / max(squared, cosines * (onSurface ? vpl.surfaceClampSquared : vpl.clampSquared)));
 #if MEDIA
-    irradiance *= exp(-opticalDepthAlong(r.position, direction, distance));
+    irradiance *= exp(-vplOpticalDepth(light, r.position, direction, distance));
 #endif
     addLight(sum, r, direction, irradiance);
 }

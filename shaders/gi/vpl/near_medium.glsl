@@ -5,7 +5,7 @@
 #define MARCH_PHASE_GROUPS PHASE_GROUPS
 #include "common/random.glsl"
 #include "media/march.glsl"
-#include "gi/vpl/lights.glsl"
+#include "gi/vpl/optical_depth.glsl"
 
 /// Light of one virtual light that a segment's media scatter against `direction`: nits, before the segment's own extinction.
 vec3 lightInMedium(uint light, vec3 position, vec3 direction, Segment s, float clampSquared) {
@@ -18,7 +18,7 @@ vec3 lightInMedium(uint light, vec3 position, vec3 direction, Segment s, float c
     bool onSurface = vplLights[light].position.w < 0.0;
     float cosines = onSurface ? dot(vplLights[light].normal.xyz, -towards) : 1.0;
     float perArea = 1.0 / max(max(squared, cosines * clampSquared), 1e-30);
-    vec3 depth = opticalDepthAlong(position, towards, distance);
+    vec3 depth = vplOpticalDepth(light, position, towards, distance);
     return scatteredLight(s, dot(towards, direction), depth) * intensity * perArea;
 }
 

@@ -31,35 +31,59 @@ vec3 compensation(uint number, vec3 position, vec3 direction, Segment s, vec3 u,
     return scattering * weight * nearMedium(number, position, back, sqrt(vpl.clampSquared), u, v);
 }
 
-/// Nits that reach the ray's origin from up to `distance` metres.
+/// How much of what a ray gathers a segment stands for, were light the same everywhere: what it scatters and how much of that gets to the eye.
+float importanceOf(Segment s, vec3 before) {
+    vec3 scattering = vec3(0.0);
+    for (int g = 0; g < MARCH_PHASE_GROUPS; ++g) scattering += s.scattering[g];
+    return meanOf(scattering * exp(-before) * oneMinusExpOverX(s.depth));
+}
+
+/// Nits that reach the ray's origin from up to `distance` metres: gathered at points that are drawn evenly in importance, once it is known how much
+/// there is.
 vec3 lightScatteredAlong(Ray ray, float distance, uvec2 pixel) {
     vec3 sum = vec3(0.0);
-    float t;
+    float t0;
     float end;
-    if (mediaExtent(ray, distance, t, end)) {
-        vec3 before = vec3(0.0);
-        float opaque = -log(max(mediaHeader.minTransmittance, 1e-30));
-        uint number = uint(pixelNoise(pixel, 21u) * float(vpl.classes));
-        // Along the segment; of the compensating vertex: direction, medium, distance.
-        vec2 noise = vec2(pixelNoise(pixel, 22u), pixelNoise(pixel, 23u));
-        vec3 u = vec3(pixelNoise2(pixel, 12u), pixelNoise(pixel, 24u));
-        for (int i = 0; i < kMostSegments && t < end && minimumOf(before) < opaque; ++i) {
-            Segment s = marchSegment(ray, t, end);
-            t = s.start + s.size;
-            if (s.scatters) {
-                ++number;
-                GatherPoint point = gatherBySegment(s, noise.x);
-                vec3 position = ray.origin + ray.direction * (s.start + s.size * point.fraction);
-                vec3 light = walksInMedium(number, position, ray.direction, s, vpl.clampSquared);
+    if (!mediaExtent(ray, distance, t0, end)) return sum;
+    float opaque = -log(max(mediaHeader.minTransmittance, 1e-30));
+    vec3 before = vec3(0.0);
+    float total = 0.0;
+    float t = t0;
+    for (int i = 0; i < kMostSegments && t < end && minimumOf(before) < opaque; ++i) {
+        Segment s = marchSegment(ray, t, end);
+        t = s.start + s.size;
+        total += importanceOf(s, before);
+        before = min(before + s.depth, vec3(kOpaque));
+    }
+    if (!(total > 0.0)) return sum;
+
+    uint number = uint(pixelNoise(pixel, 21u) * float(vpl.classes));
+    // Along the segment; of the compensating vertex: distance; direction, medium.
+    vec2 noise = vec2(pixelNoise(pixel, 22u), pixelNoise(pixel, 23u));
+    vec3 u = vec3(pixelNoise2(pixel, 12u), pixelNoise(pixel, 24u));
+    float passed = pixelNoise(pixel, 28u); // in units of a sample: one is taken wherever this reaches a whole number
+    float perSample = float(vpl.samples) / total;
+    before = vec3(0.0);
+    t = t0;
+    for (int i = 0; i < kMostSegments && t < end && minimumOf(before) < opaque; ++i) {
+        Segment s = marchSegment(ray, t, end);
+        t = s.start + s.size;
+        float expected = importanceOf(s, before) * perSample;
+        float whole = floor(passed);
+        passed += expected;
+        for (float k = whole + 1.0; k <= passed; k += 1.0) {
+            ++number;
+            GatherPoint point = gatherBySegment(s, noise.x);
+            vec3 position = ray.origin + ray.direction * (s.start + s.size * point.fraction);
+            vec3 light = walksInMedium(number, position, ray.direction, s, vpl.clampSquared);
 #if COMPENSATION == 2
-                light += compensation(number + vpl.classes / 2u, position, ray.direction, s, u, noise.y);
+            light += compensation(number + vpl.classes / 2u, position, ray.direction, s, u, noise.y);
 #endif
-                sum += exp(-before) * point.weight * light;
-                noise = fract(noise + vec2(0.61803399, 0.32471796));
-                u = fract(u + vec3(0.75487767, 0.56984029, 0.41421356));
-            }
-            before = min(before + s.depth, vec3(kOpaque));
+            sum += exp(-before) * point.weight * light / expected;
+            noise = fract(noise + vec2(0.61803399, 0.32471796));
+            u = fract(u + vec3(0.75487767, 0.56984029, 0.41421356));
         }
+        before = min(before + s.depth, vec3(kOpaque));
     }
     return sum;
 }

@@ -1,0 +1,28 @@
+// The grids' optical depth around each virtual light.
+#include "common/octahedral.glsl"
+#include "media/optical_depth.glsl"
+#include "shared/vpl.h"
+
+layout(local_size_x = 64) in;
+
+layout(std140) uniform Vpl { VplParams vpl; };
+layout(std430) readonly buffer VplLights { VplData vplLights[]; };
+layout(std430) writeonly buffer VplDepths { uvec2 vplDepths[]; };
+
+void main() {
+    uint texel = gl_GlobalInvocationID.x;
+    uint light = gl_GlobalInvocationID.y;
+    if (texel >= vpl.depthSide * vpl.depthSide || light >= vpl.lightCount) return;
+    vec2 square = (vec2(texel % vpl.depthSide, texel / vpl.depthSide) + 0.5) / float(vpl.depthSide) * 2.0 - 1.0;
+    vec3 direction = octahedralDecode(square);
+    vec3 position = vplLights[light].position.xyz;
+    float reach = length(max(abs(position - vpl.gridsMinimum.xyz), abs(position - vpl.gridsMaximum.xyz)));
+    vec3 depth = vec3(0.0);
+    uint first = (light * vpl.depthSide * vpl.depthSide + texel) * kVplDepthSteps;
+    for (uint step = 0u; step < kVplDepthSteps; ++step) {
+        float width = reach / float(kVplDepthSteps);
+        depth += gridOpticalDepth(position, direction, float(step) * width, float(step + 1u) * width);
+        vec3 stored = min(depth, vec3(6e4)); // of half precision
+        vplDepths[first + step] = uvec2(packHalf2x16(stored.rg), packHalf2x16(vec2(stored.b, 0.0)));
+    }
+}
