@@ -11,8 +11,8 @@ namespace tyndall::reference {
 /// end fits behind: what it does in endless fog outside of that ball is left out, but for what the fog takes away before.
 class LightEmission {
 public:
-    /// `scene` must outlive it.
-    explicit LightEmission(const TracerScene& scene);
+    /// `scene` must outlive it. `content`: where most of light from infinity is to be aimed; empty: everywhere alike.
+    explicit LightEmission(const TracerScene& scene, const Bounds& content = {});
 
     [[nodiscard]] bool black() const { return !(sums_.back() > 0); }
     /// Watts of all lights, the mean of the channels; bounds where textures, cones or windows dim them.
@@ -20,12 +20,18 @@ public:
     [[nodiscard]] EmittedRay sample(Sampler& sampler) const;
 
 private:
-    [[nodiscard]] Ray fromInfinity(const dvec3& direction, const dvec2& u) const;
-    [[nodiscard]] double discArea() const { return kPi * radius_ * radius_; }
+    struct Ball {
+        dvec3 centre{0};
+        double radius = 0; // metres
+        [[nodiscard]] double discArea() const { return kPi * radius * radius; }
+        [[nodiscard]] bool inDisc(const dvec3& position, const dvec3& direction) const;
+    };
+    /// `area`: 1/density of the ray among those of this direction, m².
+    [[nodiscard]] Ray fromInfinity(const dvec3& direction, double choice, const dvec2& u,
+                                   double& area) const;
 
     const TracerScene& scene_;
-    dvec3 centre_{0};
-    double radius_ = 0;             // metres, of the ball around everything
+    Ball whole_, content_;          // around everything, and around what most rays are to meet
     std::vector<double> sums_{0.0}; // cumulative power, as Lights counts them
 };
 

@@ -46,4 +46,11 @@ vec2 pixelNoise2(uvec2 pixel, uint dimension) {
                 unitFloat(pixelOffset(pixel, 2u * dimension + 65u) + steps.y));
 }
 
+/// Four numbers in [0,1) that depend on each other no more than chance has it: for what is drawn in so many dimensions at once that sequences of one
+/// step each would go round together.
+vec4 pixelRandom(uvec2 pixel, uint dimension) {
+    uint key = hashUint(pixel.x + hashUint(pixel.y + hashUint(view.frameIndex + hashUint(dimension * 0x9e3779b9u + view.seed))));
+    return vec4(unitFloat(key), unitFloat(hashUint(key + 0x632be5abu)), unitFloat(hashUint(key + 0x1b56c4e9u)), unitFloat(hashUint(key + 0x7f4a7c15u)));
+}
+
 #endif

@@ -37,7 +37,10 @@ float likeness(float distance, vec3 through, float rayDistance, vec3 rayThrough,
 }
 
 /// With a floor under the share, so that a good fit on the far side still outweighs a bad one near by.
-float rayWeight(float like, float share) { return like * like * (share + 1e-3); }
+float rayWeight(float like, float share) {
+    like = max(like, 1e-6); // whose square is a number: where none fits, all count alike
+    return like * like * (share + 1e-3);
+}
 
 /// Light that media scatter towards a pixel, from that of a ray. It grows with how much the media fill the way: light over opacity changes less from
 /// ray to ray than light does, and where there are no media there is none. Below an opacity of a thousandth, rounding would be seen.

@@ -33,7 +33,12 @@ Result<void> TracedScene::update(const plugin::FrameInputs& inputs) {
     scene_.media = std::make_unique<reference::MediaField>(scene, origin);
     scene_.lights =
         std::make_unique<reference::Lights>(scene, origin, *scene_.surfaces, *scene_.media);
-    emission_ = std::make_unique<reference::LightEmission>(scene_);
+    Bounds content = scene.contentBounds();
+    if (!content.empty()) {
+        content.minimum -= origin;
+        content.maximum -= origin;
+    }
+    emission_ = std::make_unique<reference::LightEmission>(scene_, content);
     whole_ = &scene;
     key_ = key;
     surfacesKey_ = surfaces;

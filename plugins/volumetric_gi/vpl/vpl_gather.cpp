@@ -49,6 +49,11 @@ fg::BufferHandle addUpload(fg::FrameGraph& graph, const char* name, const void* 
         .buffer;
 }
 
+/// Grids are marched in steps even where frames are averaged: cell by cell a ray takes more rounds of loops than llvmpipe grants it.
+int32_t steppedKinds(const MediaResources& media, bool towardsLights) {
+    return mediaKinds(media, towardsLights) & ~int32_t(gpu::kMediaExactGrids);
+}
+
 /// What every pass that gathers reads.
 struct GatherData {
     ViewResources view;
@@ -64,7 +69,7 @@ struct GatherData {
 void declare(fg::Builder& builder, GatherData& data, const plugin::FrameInputs& inputs,
              const VplBuffers& lights, const VplGather& gather, int factor) {
     data.view = inputs.view;
-    if (inputs.media.count > 0) {
+    if (inputs.media.count > 0 && inputs.transmittance) {
         data.media = readMedia(builder, inputs.media);
         data.sceneLights = readLights(builder, inputs.lights);
     }
@@ -86,16 +91,17 @@ fg::TextureDesc picture(const plugin::FrameInputs& inputs, int factor) {
                          (inputs.view.height + factor - 1) / factor);
 }
 
-fg::ComputeCommand begin(const GatherData& data, fg::PassContext& context, const char* shader) {
+/// `mode`: kVplClamped and so on, as far as the shader knows it.
+fg::ComputeCommand begin(const GatherData& data, fg::PassContext& context, const char* shader,
+                         uint32_t mode) {
     const bool media = data.media.count > 0;
     auto command = context.compute(
-        shader,
-        {{"MEDIA", media},
-         {"PHASE_GROUPS", media ? int32_t(data.media.phaseGroups) : 1},
-         {"MEDIA_KINDS", media ? mediaKinds(data.media, true) : 0},
-         {"SOFT_SHADOWS",
-          0}, // of lights that compensation gathers: what they light is spread anyway
-         {"COMPENSATION", int32_t(media && data.params.compensation == gpu::kVplTraced ? 2 : 0)}});
+        shader, {{"MEDIA", media},
+                 {"PHASE_GROUPS", media ? int32_t(data.media.phaseGroups) : 1},
+                 {"MEDIA_KINDS", media ? steppedKinds(data.media, true) : 0},
+                 {"SOFT_SHADOWS",
+                  0}, // of lights that compensation gathers: what they light is spread anyway
+                 {"COMPENSATION", media ? int32_t(mode) : 0}});
     bindView(command, data.view);
     if (media) {
         bindLights(command, data.sceneLights);
@@ -103,6 +109,11 @@ fg::ComputeCommand begin(const GatherData& data, fg::PassContext& context, const
     }
     bindVpls(command, data.lights, data.params).params(data.march);
     return command;
+}
+
+/// Light is never even all around a surface: that mode is for media alone.
+uint32_t surfaceMode(const GatherData& data) {
+    return data.params.compensation == gpu::kVplTraced ? gpu::kVplTraced : gpu::kVplClamped;
 }
 
 void bindSurfaces(fg::ComputeCommand& command, const GBuffer& gbuffer) {
@@ -135,7 +146,8 @@ fg::TextureHandle addMarch(fg::FrameGraph& graph, const plugin::FrameInputs& inp
             },
             [](const GatherData& data, fg::PassContext& context) {
                 auto command = begin(data, context,
-                                     data.coarse[0] ? "gi/vpl/upsample.comp" : "gi/vpl/march.comp");
+                                     data.coarse[0] ? "gi/vpl/upsample.comp" : "gi/vpl/march.comp",
+                                     data.params.compensation);
                 command.bind("depth", data.gbuffer.depth).bind("inScatter", data.result[0]);
                 if (data.coarse[0])
                     command.bind("transmittance", data.transmittance)
@@ -172,9 +184,7 @@ fg::BufferHandle addDepthMaps(fg::FrameGraph& graph, const plugin::FrameInputs& 
             [](const Data& data, fg::PassContext& context) {
                 if (data.params.depthSide == 0 || data.params.lightCount == 0)
                     return context.clearBuffer(data.depths, 0);
-                // Marched in steps even where frames are averaged: a map is not exact anyway.
-                const int32_t kinds =
-                    mediaKinds(data.media, false) & ~int32_t(gpu::kMediaExactGrids);
+                const int32_t kinds = steppedKinds(data.media, false);
                 auto command = context.compute("gi/vpl/depth_maps.comp", {{"MEDIA_KINDS", kinds}});
                 bindMedia(command, data.media);
                 command.params(data.params, "Vpl")
@@ -214,7 +224,7 @@ fg::TextureHandle addVplSurfaces(fg::FrameGraph& graph, const plugin::FrameInput
             data.result[1] = builder.create("gi.vpl.specular", desc);
         },
         [](const GatherData& data, fg::PassContext& context) {
-            auto command = begin(data, context, "gi/vpl/surfaces.comp");
+            auto command = begin(data, context, "gi/vpl/surfaces.comp", surfaceMode(data));
             bindSurfaces(command, data.gbuffer);
             command.bind("diffuse", data.result[0])
                 .bind("specular", data.result[1])
@@ -227,11 +237,15 @@ fg::TextureHandle addVplSurfaces(fg::FrameGraph& graph, const plugin::FrameInput
                 declare(builder, data, inputs, lights, gather, gather.surfaceFactor);
                 readSurfaces(builder, data, inputs);
                 for (int i = 0; i < 2; ++i) data.coarse[i] = builder.read(squares.result[i]);
+                if (inputs.media.count > 0 && inputs.transmittance)
+                    data.transmittance = builder.read(inputs.transmittance);
                 data.result[0] = builder.create("gi.vpl.surfaceRadiance", picture(inputs, 1));
             },
             [](const GatherData& data, fg::PassContext& context) {
-                auto command = begin(data, context, "gi/vpl/upsample_surfaces.comp");
+                auto command =
+                    begin(data, context, "gi/vpl/upsample_surfaces.comp", surfaceMode(data));
                 bindSurfaces(command, data.gbuffer);
+                if (data.transmittance) command.bind("transmittance", data.transmittance);
                 command.bind("diffuse", data.coarse[0])
                     .bind("specular", data.coarse[1])
                     .bind("surfaceRadiance", data.result[0])

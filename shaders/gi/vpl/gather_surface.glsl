@@ -60,10 +60,9 @@ void addLightFrom(inout SurfaceLight sum, uint light, Receiver r) {
     if (!(facing > 0.0) || !(cosine > 0.0)) return;
     vec3 intensity = vplIntensity(light, -direction);
     if (!(maximumOf(intensity) > 0.0) || !vplSees(light, r.position, -direction, distance, r.facet)) return;
-    // min(G, b)/G of 1/d²; G has both facets' cosines.
     bool onSurface = vplLights[light].position.w < 0.0;
     float cosines = facing * (onSurface ? dot(vplLights[light].normal.xyz, -direction) : 1.0);
-    vec3 irradiance = intensity * (cosine / max(squared, cosines * (onSurface ? vpl.surfaceClampSquared : vpl.clampSquared)));
+    vec3 irradiance = intensity * (cosine * heldInverseSquare(squared, cosines, onSurface ? vpl.surfaceClampSquared : vpl.clampSquared));
 #if MEDIA
     irradiance *= exp(-vplOpticalDepth(light, r.position, direction, distance));
 #endif
@@ -79,14 +78,14 @@ SurfaceLight gatherSurface(Receiver r, uint number, uint stride, uvec2 pixel) {
     sum.specular *= float(stride);
 #if MEDIA && COMPENSATION == 2
     // Evenly in what a facet receives; the bound reaches as far as its cosine lets it.
-    vec2 u = pixelNoise2(pixel, 13u);
+    vec4 u = pixelRandom(pixel, 13u);
     float z = sqrt(1.0 - u.x);
     float angle = 2.0 * kPi * u.y;
     vec3 direction = frameAround(r.facet) * vec3(sqrt(u.x) * cos(angle), sqrt(u.x) * sin(angle), z);
     float cosine = dot(r.normal, direction);
     if (cosine > 0.0) {
-        vec3 noise = vec3(pixelNoise(pixel, 25u), pixelNoise2(pixel, 14u));
-        vec3 near = nearMedium(number + uint(noise.x * float(vpl.classes)), r.position, direction, sqrt(vpl.clampSquared * z), noise, pixelNoise(pixel, 26u));
+        vec4 noise = pixelRandom(pixel, 14u);
+        vec3 near = nearMedium(uint(u.z * float(vpl.classes)), r.position, direction, sqrt(vpl.clampSquared * z), noise.xyz, noise.w);
         addLight(sum, r, direction, near * (kPi * cosine / max(z, 1e-3)));
     }
 #endif

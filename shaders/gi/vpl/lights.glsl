@@ -7,6 +7,8 @@
 #include "lighting/brdf.glsl"
 #include "shared/vpl.h"
 
+#include "gi/vpl/bound.glsl"
+
 layout(std140) uniform Vpl { VplParams vpl; };
 layout(std430) readonly buffer VplLights { VplData vplLights[]; };
 layout(std430) readonly buffer VplWalks { uint vplWalks[]; };   // where each walk's lights begin; one more: where the last ends
@@ -50,8 +52,5 @@ bool vplSees(uint light, vec3 position, vec3 direction, float distance, vec3 nor
     vec3 seen = from - middle * (ofLight / slope);
     return dot(normal, seen - position) <= rounding;
 }
-
-/// The walks that class `number` gathers: every `classes`-th.
-uint vplFirstWalk(uint number) { return number % vpl.classes; }
 
 #endif

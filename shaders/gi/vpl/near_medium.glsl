@@ -17,7 +17,7 @@ vec3 lightInMedium(uint light, vec3 position, vec3 direction, Segment s, float c
     if (!(maximumOf(intensity) > 0.0) || !vplSees(light, position, -towards, distance, vec3(0.0))) return vec3(0.0);
     bool onSurface = vplLights[light].position.w < 0.0;
     float cosines = onSurface ? dot(vplLights[light].normal.xyz, -towards) : 1.0;
-    float perArea = 1.0 / max(max(squared, cosines * clampSquared), 1e-30);
+    float perArea = heldInverseSquare(squared, cosines, clampSquared);
     vec3 depth = vplOpticalDepth(light, position, towards, distance);
     return scatteredLight(s, dot(towards, direction), depth) * intensity * perArea;
 }

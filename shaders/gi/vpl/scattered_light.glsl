@@ -31,6 +31,19 @@ vec3 compensation(uint number, vec3 position, vec3 direction, Segment s, vec3 u,
     return scattering * weight * nearMedium(number, position, back, sqrt(vpl.clampSquared), u, v);
 }
 
+/// The same without following anything, as if light were even all around (validation: compensation algebra): with F the part that is lost of
+/// light that is scattered here, S = S_held + albedo F (S_direct + S).
+vec3 evenCompensation(vec3 held, Segment s, Ray ray, vec3 u, uint number) {
+    vec3 scattering = vec3(0.0);
+    for (int g = 0; g < MARCH_PHASE_GROUPS; ++g) scattering += s.scattering[g];
+    float reach = sqrt(vpl.clampSquared);
+    vec3 albedo = min(scattering / max(s.depth, vec3(1e-30)), vec3(1.0));
+    vec3 again = albedo * clampLoss(s.depth * (reach / s.size));
+    Segment here = pointSegment(ray, 0.0, reach);
+    vec3 direct = s.size * segmentInScatter(ray, here, vpl.lightsOfScene, u, number);
+    return (held + again * direct) / max(1.0 - again, vec3(1e-3));
+}
+
 /// How much of what a ray gathers a segment stands for, were light the same everywhere: what it scatters and how much of that gets to the eye.
 float importanceOf(Segment s, vec3 before) {
     vec3 scattering = vec3(0.0);
@@ -58,9 +71,11 @@ vec3 lightScatteredAlong(Ray ray, float distance, uvec2 pixel) {
     if (!(total > 0.0)) return sum;
 
     uint number = uint(pixelNoise(pixel, 21u) * float(vpl.classes));
-    // Along the segment; of the compensating vertex: distance; direction, medium.
-    vec2 noise = vec2(pixelNoise(pixel, 22u), pixelNoise(pixel, 23u));
-    vec3 u = vec3(pixelNoise2(pixel, 12u), pixelNoise(pixel, 24u));
+    // Along the segment; of the compensating vertex: class, distance; direction, medium.
+    vec4 random = pixelRandom(pixel, 12u);
+    float noise = random.w;
+    vec4 u = pixelRandom(pixel, 15u);
+    uint other = uint(pixelRandom(pixel, 16u).x * float(vpl.classes));
     float passed = pixelNoise(pixel, 28u); // in units of a sample: one is taken wherever this reaches a whole number
     float perSample = float(vpl.samples) / total;
     before = vec3(0.0);
@@ -73,15 +88,17 @@ vec3 lightScatteredAlong(Ray ray, float distance, uvec2 pixel) {
         passed += expected;
         for (float k = whole + 1.0; k <= passed; k += 1.0) {
             ++number;
-            GatherPoint point = gatherBySegment(s, noise.x);
+            GatherPoint point = gatherBySegment(s, noise);
             vec3 position = ray.origin + ray.direction * (s.start + s.size * point.fraction);
             vec3 light = walksInMedium(number, position, ray.direction, s, vpl.clampSquared);
-#if COMPENSATION == 2
-            light += compensation(number + vpl.classes / 2u, position, ray.direction, s, u, noise.y);
+#if COMPENSATION == 1
+            light = evenCompensation(light, s, Ray(position, ray.direction), u.xyz, number);
+#elif COMPENSATION == 2
+            light += compensation(number + other, position, ray.direction, s, u.xyz, u.w);
 #endif
             sum += exp(-before) * point.weight * light / expected;
-            noise = fract(noise + vec2(0.61803399, 0.32471796));
-            u = fract(u + vec3(0.75487767, 0.56984029, 0.41421356));
+            noise = fract(noise + 0.61803399);
+            u = fract(u + vec4(0.85667488, 0.73389185, 0.62870672, 0.53859725)); // powers of the root of x⁵ = x + 1: well spread in four dimensions
         }
         before = min(before + s.depth, vec3(kOpaque));
     }

@@ -10,13 +10,27 @@ uniform sampler2D diffuse;
 uniform sampler2D specular;
 layout(rgba32f) writeonly uniform image2D surfaceRadiance;
 
+const float kFar = 0.1; // of the distance to the eye: on a surface that is seen at a grazing angle neighbouring pixels lie far apart
+
+#if MEDIA
+uniform sampler2D transmittance;
+const float kDeep = 0.3; // optical depth over which light changes in a medium
+
+/// Of how much more medium one pixel is seen through than another: in thick fog light changes over a free path.
+float depthApart(ivec2 a, ivec2 b) {
+    vec3 quotient = max(texelFetch(transmittance, a, 0).rgb, vec3(1e-30)) / max(texelFetch(transmittance, b, 0).rgb, vec3(1e-30));
+    return maximumOf(abs(log(quotient)));
+}
+#endif
+
 /// How well the light of one surface stands for another's: 1 for a perfect fit.
 float surfaceLikeness(Receiver r, Receiver other, float distance) {
-    float apart = abs(dot(r.facet, other.position - r.position)) / distance;
+    vec3 way = (other.position - r.position) / distance;
+    float offPlane = abs(dot(r.facet, way));
     float facing = max(dot(r.normal, other.normal), 0.0);
     float f2 = facing * facing;
     float f4 = f2 * f2;
-    return f4 * f4 / (1.0 + apart / params.depthTolerance);
+    return f4 * f4 / (1.0 + offPlane / params.depthTolerance) / (1.0 + dot(way, way) / (kFar * kFar));
 }
 
 void main() {
@@ -37,6 +51,9 @@ void main() {
             Receiver other;
             if (!receiverAt(near.pixel, other)) continue;
             float like = surfaceLikeness(r, other, distance);
+#if MEDIA
+            like /= 1.0 + depthApart(pixel, near.pixel) / kDeep;
+#endif
             float weight = rayWeight(like, near.share);
             best = max(best, like);
             total += weight;
