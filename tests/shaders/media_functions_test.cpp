@@ -116,5 +116,77 @@ TEST_P(MediaFunctions, PhaseFunctionsIntegrateToOneOverTheSphere) {
     }
 }
 
+TEST_P(MediaFunctions, CosinesDrawnFromAPhaseFunctionAreItsOwn) {
+    // For even u the drawn cosines are quantiles: between two of them lies an equal part of the function (times its weight).
+    constexpr int kCount = 4096;
+    for (const auto& [kind, g] : {std::pair{0, -0.9f},
+                                  {0, -0.3f},
+                                  {0, 0.0f},
+                                  {0, 1e-6f},
+                                  {0, 0.5f},
+                                  {0, 0.97f},
+                                  {1, 0.0f},
+                                  {2, 0.0f},
+                                  {2, 0.6f},
+                                  {2, -0.8f}}) {
+        std::vector<vec4> inputs;
+        for (int i = 0; i < kCount; ++i)
+            inputs.emplace_back(g, (float(i) + 0.5f) / float(kCount), float(kind), 0);
+        const auto outputs = runOnly(
+            {"common/phase_function.glsl"},
+            "float weight; float c = samplePhaseFunction(uint(inputs[id].z), inputs[id].x, inputs[id].y, weight);"
+            " outputs[id] = vec4(c, weight, 0, 0);",
+            inputs);
+        double total = 0, mean = 0, second = 0;
+        for (const vec4& drawn : outputs) {
+            ASSERT_GE(drawn.x, -1.0f);
+            ASSERT_LE(drawn.x, 1.0f);
+            const double c = double(drawn.x), weight = double(drawn.y) / kCount;
+            total += weight;
+            mean += weight * c;
+            second += weight * c * c;
+        }
+        const double exactMean = kind == 0   ? double(g)
+                                 : kind == 1 ? 0
+                                             : cornetteShanksMeanCosine(double(g));
+        EXPECT_NEAR(total, 1, 2e-3) << kind << ' ' << g;
+        EXPECT_NEAR(mean, exactMean, 2e-3) << kind << ' ' << g;
+        // Second moments: (1 + 2g²)/3 of Henyey and Greenstein, 2/5 of Rayleigh.
+        if (kind == 2) continue;
+        const double exactSecond = kind == 1 ? 0.4 : (1 + 2 * double(g) * double(g)) / 3;
+        EXPECT_NEAR(second, exactSecond, 2e-3) << kind << ' ' << g;
+    }
+}
+
+TEST_P(MediaFunctions, TheBoundTakesAwayWhatFindingSevenSays) {
+    // transport.md 4.1, finding 7 and validation 1.7: of the energy of a virtual light in a medium of extinction 1.
+    const std::pair<double, double> rows[] = {
+        {0.1, 0.0642320}, {0.5, 0.2783679}, {1, 0.4715178}, {2, 0.7030029}, {5, 0.9232342}};
+    for (const auto& [x, lost] : rows) {
+        // ∫ 4π r² e⁻ʳ min(1/r², b)/4π dr by Simpson's rule, from the shader's own bound.
+        constexpr int kPanels = 20000;
+        constexpr double kFarthest = 40;
+        std::vector<vec4> inputs;
+        for (int i = 0; i <= 2 * kPanels; ++i) {
+            const double r = kFarthest * i / (2.0 * kPanels);
+            inputs.emplace_back(float(r * r), 1.0f, float(x * x), float(x));
+        }
+        const auto outputs = runOnly(
+            {"gi/vpl/bound.glsl"},
+            "outputs[id] = vec4(heldInverseSquare(inputs[id].x, inputs[id].y, inputs[id].z),"
+            " clampLoss(vec3(inputs[id].w)).x, 0, 0);",
+            inputs);
+        double kept = 0;
+        for (int i = 0; i <= 2 * kPanels; ++i) {
+            const double r = kFarthest * i / (2.0 * kPanels);
+            const double weight = i == 0 || i == 2 * kPanels ? 1 : (i % 2 ? 4 : 2);
+            kept += weight * r * r * std::exp(-r) * double(outputs[size_t(i)].x) * kFarthest /
+                    (6.0 * kPanels);
+        }
+        EXPECT_NEAR(1 - kept, lost, 5e-4) << x;
+        EXPECT_NEAR(double(outputs[0].y), lost, 1e-6) << x;
+    }
+}
+
 } // namespace
 } // namespace tyndall::test

@@ -53,4 +53,23 @@ bool vplSees(uint light, vec3 position, vec3 direction, float distance, vec3 nor
     return dot(normal, seen - position) <= rounding;
 }
 
+/// The nearest virtual light that sees a point: it stands for what the scene is like around there.
+struct Guide {
+    uint light; // kVplNothing: none does
+    float squared;
+};
+const Guide kNoGuide = Guide(kVplNothing, 1e38);
+
+void consider(inout Guide guide, uint light, float squared) {
+    if (squared < guide.squared) guide = Guide(light, squared);
+}
+
+/// Is `position` in the same room as the point that the guide sees? Not if that light does not see it.
+bool guideSees(Guide guide, vec3 position) {
+    if (guide.light == kVplNothing) return vpl.mapSide == 0u;
+    vec3 way = position - vplLights[guide.light].position.xyz;
+    float distance = length(way);
+    return distance == 0.0 || vplSees(guide.light, position, way / distance, distance, vec3(0.0));
+}
+
 #endif

@@ -23,12 +23,12 @@ vec3 phaseDirection(Segment s, vec3 direction, vec3 u, out float weight) {
 }
 
 /// What the bound takes away from the light that a segment scatters at `position`.
-vec3 compensation(uint number, vec3 position, vec3 direction, Segment s, vec3 u, float v) {
+vec3 compensation(Guide guide, uint number, vec3 position, vec3 direction, Segment s, vec3 u, float v) {
     float weight;
     vec3 back = phaseDirection(s, direction, u, weight);
     vec3 scattering = vec3(0.0);
     for (int g = 0; g < MARCH_PHASE_GROUPS; ++g) scattering += s.scattering[g];
-    return scattering * weight * nearMedium(number, position, back, sqrt(vpl.clampSquared), u, v);
+    return scattering * weight * nearMedium(guide, number, position, back, sqrt(vpl.clampSquared), u, v);
 }
 
 /// The same without following anything, as if light were even all around (validation: compensation algebra): with F the part that is lost of
@@ -90,11 +90,12 @@ vec3 lightScatteredAlong(Ray ray, float distance, uvec2 pixel) {
             ++number;
             GatherPoint point = gatherBySegment(s, noise);
             vec3 position = ray.origin + ray.direction * (s.start + s.size * point.fraction);
-            vec3 light = walksInMedium(number, position, ray.direction, s, vpl.clampSquared);
+            Guide guide = kNoGuide;
+            vec3 light = walksInMedium(number, position, ray.direction, s, vpl.clampSquared, guide);
 #if COMPENSATION == 1
             light = evenCompensation(light, s, Ray(position, ray.direction), u.xyz, number);
 #elif COMPENSATION == 2
-            light += compensation(number + other, position, ray.direction, s, u.xyz, u.w);
+            light += compensation(guide, number + other, position, ray.direction, s, u.xyz, u.w);
 #endif
             sum += exp(-before) * point.weight * light / expected;
             noise = fract(noise + 0.61803399);

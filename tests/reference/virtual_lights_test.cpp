@@ -1,0 +1,150 @@
+// Light as it leaves its sources, the walks that it goes on, and the bound that virtual point lights are held at.
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "reference/light_walk.h"
+#include "reference/render.h"
+#include "validation/scenes.h"
+
+namespace tyndall::validation {
+namespace {
+
+struct Mean {
+    dvec3 value{0};
+    double error = 0; // standard, of the largest channel
+};
+
+/// Of the power of rays that a scene's lights send out.
+Mean emittedPower(const Scene& scene) {
+    auto traced = reference::TracerScene::build(scene, dvec3(0), 1);
+    if (!traced.ok()) throw std::runtime_error(traced.message());
+    const reference::LightEmission emission(*traced);
+    constexpr uint32_t kRays = 20000;
+    dvec3 sum(0);
+    double squares = 0;
+    for (uint32_t i = 0; i < kRays; ++i) {
+        reference::Sampler sampler(7, 0, i);
+        const dvec3 power = emission.sample(sampler).power;
+        sum += power / double(kRays);
+        squares += glm::dot(power, power) / double(kRays);
+    }
+    const double variance = std::max(squares - glm::dot(sum, sum), 0.0);
+    return {sum, std::sqrt(variance / double(kRays))};
+}
+
+void addBlackBall(
+    SceneMaker& maker) { // for light from infinity to fall on: its ball has a radius of √3/2·2
+    maker.addPrimitive(PrimitiveShape::Box, {2, 2, 2}, matt({0, 0, 0}));
+}
+
+TEST(LightEmission, PowerIsItsClosedForm) {
+    const double disc = kPi * 3; // m², across the ball around a cube of 2 m
+    struct Case {
+        const char* name;
+        double watts;
+        Light light;
+    };
+    std::vector<Case> cases;
+    Light light;
+    light.color = {1, 1, 1};
+    light.type = LightType::Point;
+    light.intensity = 5;
+    cases.push_back({"a point", 4 * kPi * 5, light});
+    light.radius = 0.3f;
+    cases.push_back({"a ball", 4 * kPi * 5, light});
+    light.radius = 0;
+    light.type = LightType::Spot;
+    light.innerConeAngle = 0.3f;
+    light.outerConeAngle = 0.8f;
+    // ∫ (clamp((c - c₁)/(c₀ - c₁), 0, 1))² 2π dc: a third of the penumbra, and all inside.
+    const double inner = std::cos(double(0.3f)), outer = std::cos(double(0.8f));
+    cases.push_back({"a spot", 5 * 2 * kPi * ((1 - inner) + (inner - outer) / 3), light});
+    light.type = LightType::Rect;
+    light.size = {1.5f, 0.5f};
+    light.radiance = {4, 4, 4};
+    cases.push_back({"a rectangle", kPi * 4 * 0.75, light});
+    light.type = LightType::Directional;
+    cases.push_back({"a sun", 5 * disc, light});
+    light.radius = 0.2f;
+    // Lux count cosines to the disc's middle, watts do not: ∫ dω / ∫ cos dω = 2/(1 + cos 0.2).
+    cases.push_back({"a sun with a disc", 5 * disc * 2 / (1 + std::cos(double(0.2f))), light});
+    for (const Case& one : cases) {
+        SceneMaker maker;
+        addBlackBall(maker);
+        maker.addLight(one.light, lookAlong({0, -1, 0.2}, {0, 3, 0}));
+        const Mean power = emittedPower(maker.take());
+        EXPECT_NEAR(power.value.x, one.watts, 4 * power.error + 1e-6 * one.watts) << one.name;
+    }
+    SceneMaker sky;
+    addBlackBall(sky);
+    sky.addWhiteEnvironment();
+    const Mean power = emittedPower(sky.take());
+    EXPECT_NEAR(power.value.x, 4 * kPi * disc, 4 * power.error + 1e-6 * disc);
+
+    Material glowing = matt({0, 0, 0});
+    glowing.emissive = {2, 1, 0};
+    SceneMaker box;
+    box.addPrimitive(PrimitiveShape::Box, {1, 2, 3}, glowing);
+    const Mean glow = emittedPower(box.take());
+    const double sides = glowing.doubleSided ? 2 : 1;
+    EXPECT_NEAR(glow.value.x, sides * 2 * kPi * 22, 4 * glow.error + 1e-6);
+    EXPECT_NEAR(glow.value.y, sides * kPi * 22, 4 * glow.error + 1e-6);
+}
+
+TEST(InstantRadiosity, TheMeanIsTheSameForEveryBound) {
+    SceneMaker maker;
+    Medium fog;
+    fog.kind = MediumKind::Sphere;
+    fog.size = dvec3(3);
+    fog.scattering = {1.2f, 1.0f, 0.8f};
+    fog.absorption = {0.1f, 0.1f, 0.1f};
+    maker.addMedium(fog);
+    maker.addPrimitive(PrimitiveShape::Box, {1, 0.2, 1}, matt({0.7f, 0.6f, 0.5f}));
+    maker.addPointLight({0.5, 1.1, 0.4}, 10, 0.2);
+    const int camera = maker.addCamera({0.3, 0.7, 4}, {0, 0, 0});
+    const Scene scene = maker.take();
+    reference::RenderSettings settings;
+    settings.width = settings.height = 6;
+    settings.path.terms = kIndirectOnSurfaces | kIndirectInMedia;
+    const auto render = [&](reference::Integrator integrator, double clamp, bool compensate,
+                            uint32_t samples) {
+        settings.integrator = integrator;
+        settings.clampDistance = clamp;
+        settings.compensate = compensate;
+        settings.seed += 1;
+        auto started = reference::ReferenceRender::start(scene, camera, settings);
+        if (!started.ok()) throw std::runtime_error(started.message());
+        started->addSamples(samples);
+        Mean mean;
+        const Image beauty = started->film().beauty(), variance = started->film().variance();
+        const double n = double(beauty.pixels.size());
+        double sum = 0;
+        for (size_t i = 0; i < beauty.pixels.size(); ++i) {
+            mean.value.x += double(beauty.pixels[i]) / n;
+            sum += 3 * double(variance.pixels[i]) / (n * n); // channels go up and down together
+        }
+        mean.error = std::sqrt(sum);
+        return mean;
+    };
+    const Mean truth = render(reference::Integrator::Volume, 0, true, 4096);
+    double clampedAtOne = 0;
+    for (const double clamp : {0.003, 0.03, 0.3, 3.0, 30.0}) {
+        const Mean mean = render(reference::Integrator::InstantRadiosity, clamp, true,
+                                 clamp < 0.01  ? 131072
+                                 : clamp < 0.1 ? 32768
+                                               : 8192);
+        const double error = std::hypot(mean.error, truth.error);
+        printf("bound at %g m: %.5f, %+.2f standard errors (%.2f %%)\n", clamp, mean.value.x,
+               (mean.value.x - truth.value.x) / error, 100 * error / truth.value.x);
+        EXPECT_LE(std::abs(mean.value.x - truth.value.x), 3 * error) << clamp;
+        EXPECT_LT(error, 0.03 * truth.value.x) << "too coarse to tell anything";
+    }
+    // And without what makes up for it the bound is seen.
+    clampedAtOne = render(reference::Integrator::InstantRadiosity, 1, false, 4096).value.x;
+    EXPECT_LT(clampedAtOne, 0.8 * truth.value.x);
+}
+
+} // namespace
+} // namespace tyndall::validation
