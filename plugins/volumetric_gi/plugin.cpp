@@ -75,7 +75,7 @@ public:
     }
     fg::TextureHandle addPostPasses(fg::FrameGraph& graph, const plugin::FrameInputs& inputs,
                                     fg::TextureHandle color) override {
-        return lpv_.addPostPasses(graph, inputs, color);
+        return vpl_.addPostPasses(graph, inputs, lpv_.addPostPasses(graph, inputs, color));
     }
     void destroy() override { delete this; }
 

@@ -37,6 +37,15 @@ struct VplParams {
     uint padding2;
 };
 
+struct VplShowParams {
+    uint what;    // kVplShowLights or kVplShowMap
+    uint light;   // whose map
+    float radius; // of a ball, metres
+    float white;  // nits
+};
+TYNDALL_CONST uint kVplShowLights = 1u;
+TYNDALL_CONST uint kVplShowMap = 2u;
+
 TYNDALL_CONST uint kVplClamped = 0u;    // what the bound takes away is missing
 TYNDALL_CONST uint kVplClosedForm = 1u; // as if light were the same all around
 TYNDALL_CONST uint kVplTraced = 2u;     // from one point near by for each that gathers

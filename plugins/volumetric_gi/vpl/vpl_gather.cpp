@@ -6,21 +6,6 @@
 namespace tyndall::volumetric_gi {
 namespace {
 
-VplBuffers read(fg::Builder& builder, const VplBuffers& buffers) {
-    return {builder.read(buffers.lights), builder.read(buffers.walks), builder.read(buffers.maps),
-            builder.read(buffers.planes), builder.read(buffers.depths)};
-}
-
-template <typename Command>
-Command& bindVpls(Command& command, const VplBuffers& buffers, const gpu::VplParams& params) {
-    return command.params(params, "Vpl")
-        .bind("VplLights", buffers.lights)
-        .bind("VplWalks", buffers.walks)
-        .bind("VplMaps", buffers.maps)
-        .bind("VplPlanes", buffers.planes)
-        .bind("VplDepths", buffers.depths);
-}
-
 /// One buffer of CPU data, uploaded where `key` is new. Sizes are rounded up to powers of two, so that few are ever made.
 fg::BufferHandle addUpload(fg::FrameGraph& graph, const char* name, const void* data, size_t bytes,
                            uint64_t key) {
@@ -73,7 +58,7 @@ void declare(fg::Builder& builder, GatherData& data, const plugin::FrameInputs& 
         data.media = readMedia(builder, inputs.media);
         data.sceneLights = readLights(builder, inputs.lights);
     }
-    data.lights = read(builder, lights);
+    data.lights = readVpls(builder, lights);
     data.params = gather.params;
     data.march = inputs.march;
     data.march.factor = uint32_t(factor);
@@ -197,6 +182,11 @@ fg::BufferHandle addDepthMaps(fg::FrameGraph& graph, const plugin::FrameInputs& 
 }
 
 } // namespace
+
+VplBuffers readVpls(fg::Builder& builder, const VplBuffers& buffers) {
+    return {builder.read(buffers.lights), builder.read(buffers.walks), builder.read(buffers.maps),
+            builder.read(buffers.planes), builder.read(buffers.depths)};
+}
 
 VplBuffers addVplUpload(fg::FrameGraph& graph, const plugin::FrameInputs& inputs,
                         const VplUpload& upload, const gpu::VplParams& params) {

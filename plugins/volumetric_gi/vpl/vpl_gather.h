@@ -12,6 +12,20 @@ struct VplBuffers {
     fg::BufferHandle depths; // of grids; null: without
 };
 
+/// Declares that a pass reads them; the result is what bindVpls() takes.
+[[nodiscard]] VplBuffers readVpls(fg::Builder& builder, const VplBuffers& buffers);
+
+/// For shaders that include gi/vpl/lights.glsl.
+template <typename Command>
+Command& bindVpls(Command& command, const VplBuffers& buffers, const gpu::VplParams& params) {
+    return command.params(params, "Vpl")
+        .bind("VplLights", buffers.lights)
+        .bind("VplWalks", buffers.walks)
+        .bind("VplMaps", buffers.maps)
+        .bind("VplPlanes", buffers.planes)
+        .bind("VplDepths", buffers.depths);
+}
+
 /// What goes up; must live until the frame has been executed. `lightsKey`, `planesKey`: of its content.
 struct VplUpload {
     const VplSet* set = nullptr;

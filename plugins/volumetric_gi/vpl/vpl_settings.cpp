@@ -6,6 +6,8 @@ namespace {
 constexpr const char* kCompensationNames[] = {"clamped", "closed", "traced"};
 constexpr const char* kMarchNames[] = {"full", "half", "quarter", "eighth"};
 
+constexpr const char* kShowNames[] = {"nothing", "lights", "map"};
+
 const SettingDesc kVplSettings[] = {
     TYNDALL_INT(
         VplSettings, walks, "gi.vpl.walks", "Walks", "", 1, 65536, 256,
@@ -49,6 +51,11 @@ const SettingDesc kVplSettings[] = {
     TYNDALL_BOOL(
         VplSettings, keep, "gi.vpl.keep", "Keep walks", true,
         "Walks and maps are kept while nothing has changed; off: made anew each frame, to be timed."),
+    TYNDALL_ENUM(
+        VplSettings, show, "gi.vpl.show", "Show", kShowNames, 0,
+        "The virtual lights in the picture, green on surfaces and red in media, or the map of what one of them sees."),
+    TYNDALL_INT(VplSettings, showLight, "gi.vpl.showLight", "Light shown", "", 0, 1000000, 0,
+                "Number of the virtual light whose map is shown."),
 };
 
 constexpr PresetEntry kVplPresets[] = {

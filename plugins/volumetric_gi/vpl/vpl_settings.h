@@ -19,6 +19,8 @@ struct VplSettings {
     float relaxed;
     float roughness;
     bool fromSurfaces, fromMedia, keep;
+    int32_t show; // 0: nothing, else kVplShow…
+    int32_t showLight;
 };
 std::span<const SettingDesc> vplSettings();
 std::span<const PresetEntry> vplPresets();

@@ -6,12 +6,20 @@
 
 #include "framegraph/hash.h"
 #include "volumetric_gi/vpl/vpl_maps.h"
+#include "volumetric_gi/vpl/vpl_show.h"
 
 namespace tyndall::volumetric_gi {
 namespace {
 
 /// Rounds of loops that one invocation of a shader may run: llvmpipe ends them all at 65,535, and each light gathered takes some.
 constexpr double kMostRounds = 16000;
+/// Of a light that is shown, part of the mean distance between lights.
+constexpr double kBall = 0.08;
+
+/// As in VplTechnique::statistics_.
+constexpr plugin::Statistic kStatistics[] = {
+    {"virtual_lights.gi.vpl", 0}, {"walks.gi.vpl", 1}, {"walks_cut_off.gi.vpl", 2}};
+
 bool converges(const plugin::FrameInputs& inputs) {
     return (inputs.view.data.flags & gpu::kViewConverge) != 0;
 }
@@ -93,15 +101,51 @@ plugin::FrameOutputs VplTechnique::addPasses(fg::FrameGraph& graph,
         return {};
     }
     makeLights(inputs);
-    const VplGather how = gather(inputs);
-    const VplBuffers buffers =
-        addVplUpload(graph, inputs, {&set_, &maps_, &planes_, lightsKey_, planesKey_}, how.params);
+    gather_ = gather(inputs);
+    buffers_ = addVplUpload(graph, inputs, {&set_, &maps_, &planes_, lightsKey_, planesKey_},
+                            gather_.params);
     plugin::FrameOutputs outputs;
     if (inputs.terms & kIndirectOnSurfaces)
-        outputs.surfaceRadiance = addVplSurfaces(graph, inputs, buffers, how);
+        outputs.surfaceRadiance = addVplSurfaces(graph, inputs, buffers_, gather_);
     if (inputs.terms & ~kIndirectOnSurfaces)
-        outputs.inScatter = addVplMedia(graph, inputs, buffers, how);
+        outputs.inScatter = addVplMedia(graph, inputs, buffers_, gather_);
+    if (inputs.statistics) {
+        outputs.statistics = addStatistics(graph);
+        outputs.statistic = kStatistics;
+        outputs.statisticCount = uint32_t(std::size(kStatistics));
+    }
     return outputs;
+}
+
+fg::BufferHandle VplTechnique::addStatistics(fg::FrameGraph& graph) {
+    statistics_ = {float(set_.lights.size()), float(set_.walks.size() - 1), float(set_.cutOff)};
+    struct Data {
+        fg::BufferHandle values;
+        const float* data;
+    };
+    return graph
+        .addPass<Data>(
+            "gi.vpl.statistics",
+            [&](fg::Builder& builder, Data& data) {
+                data.data = statistics_.data();
+                data.values =
+                    builder.create("gi.vpl.statistics", fg::BufferDesc{sizeof statistics_},
+                                   fg::Access::TransferWrite);
+            },
+            [](const Data& data, fg::PassContext& context) {
+                context.upload(data.values, 0, data.data, sizeof statistics_);
+            })
+        .values;
+}
+
+fg::TextureHandle VplTechnique::addPostPasses(fg::FrameGraph& graph,
+                                              const plugin::FrameInputs& inputs,
+                                              fg::TextureHandle color) {
+    const auto radius = float(kBall * meanDistance(1));
+    const fg::TextureHandle shown =
+        addVplShow(graph, inputs, settings_, buffers_, gather_.params, radius, color);
+    buffers_ = {}; // of this frame alone
+    return shown;
 }
 
 } // namespace tyndall::volumetric_gi

@@ -2,6 +2,7 @@
 // Instant multiple scattering (Engelhardt, Novák and Dachsbacher 2010): virtual point lights of random walks through surfaces and media, gathered on
 // surfaces and along eye rays, with what their bound takes away. docs/techniques/vpl.md tells how.
 
+#include <array>
 #include <string>
 #include <vector>
 
@@ -18,7 +19,12 @@ public:
     plugin::FrameOutputs addPasses(fg::FrameGraph& graph, const plugin::FrameInputs& inputs,
                                    plugin::Host& host);
 
+    /// The lights in the finished picture, where settings ask for it.
+    fg::TextureHandle addPostPasses(fg::FrameGraph& graph, const plugin::FrameInputs& inputs,
+                                    fg::TextureHandle color);
+
 private:
+    fg::BufferHandle addStatistics(fg::FrameGraph& graph);
     void makeLights(const plugin::FrameInputs& inputs);
     [[nodiscard]] VplGather gather(const plugin::FrameInputs& inputs) const;
     [[nodiscard]] double meanDistance(uint32_t frames) const;
@@ -30,6 +36,9 @@ private:
     std::vector<vec4> planes_;
     uint64_t lightsKey_ = 0, planesKey_ = 0;
     std::string said_;
+    VplBuffers buffers_; // of this frame
+    VplGather gather_;
+    std::array<float, 3> statistics_{};
 };
 
 } // namespace tyndall::volumetric_gi

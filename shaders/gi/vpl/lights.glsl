@@ -14,6 +14,7 @@ layout(std430) readonly buffer VplLights { VplData vplLights[]; };
 layout(std430) readonly buffer VplWalks { uint vplWalks[]; };   // where each walk's lights begin; one more: where the last ends
 layout(std430) readonly buffer VplMaps { uint vplMaps[]; };     // for each light mapSide² numbers of planes, by direction
 layout(std430) readonly buffer VplPlanes { vec4 vplPlanes[]; }; // n·p + w = 0
+layout(std430) readonly buffer VplDepths { uvec2 vplDepths[]; }; // the grids' optical depth, rgb in half precision, by light, direction, distance
 
 /// Watts per steradian towards `direction` (unit); on a surface with the cosine there.
 vec3 vplIntensity(uint light, vec3 direction) {

@@ -51,7 +51,7 @@ vec3 nearMedium(Guide guide, uint number, vec3 position, vec3 direction, float r
     vec3 at = position + direction * t;
     if (!there.scatters || !guideSees(guide, at)) return vec3(0.0);
     Guide other = kNoGuide;
-    vec3 light = walksInMedium(number, at, direction, there, vpl.clampSquared / (vpl.relaxed * vpl.relaxed), other);
+    vec3 light = walksInMedium(number, at, direction, there, min(vpl.clampSquared, reach * reach) / (vpl.relaxed * vpl.relaxed), other);
     light += segmentInScatter(ray, there, vpl.lightsOfScene, u, number);
     return 2.0 / 3.0 * reach * exp(-opticalDepthAlong(position, direction, t)) * light;
 }

@@ -5,8 +5,6 @@
 #include "gi/vpl/lights.glsl"
 #include "media/optical_depth.glsl"
 
-layout(std430) readonly buffer VplDepths { uvec2 vplDepths[]; }; // rgb in half precision, by light, direction, distance
-
 /// Metres from a virtual light to beyond the last grid.
 float vplDepthReach(vec3 position) {
     return length(max(abs(position - vpl.gridsMinimum.xyz), abs(position - vpl.gridsMaximum.xyz)));

@@ -22,21 +22,27 @@ vec3 phaseDirection(Segment s, vec3 direction, vec3 u, out float weight) {
     return normalize(frameAround(direction) * vec3(sine * cos(angle), sine * sin(angle), cosine));
 }
 
+/// 1/b of a point in a segment: no farther than a free path, or what the bound takes away would be most of the light, and has to be followed on and on.
+float localClampSquared(Segment s) {
+    float freePath = s.size / max(maximumOf(s.depth), 1e-30);
+    return min(vpl.clampSquared, freePath * freePath);
+}
+
 /// What the bound takes away from the light that a segment scatters at `position`.
-vec3 compensation(Guide guide, uint number, vec3 position, vec3 direction, Segment s, vec3 u, float v) {
+vec3 compensation(Guide guide, float clampSquared, uint number, vec3 position, vec3 direction, Segment s, vec3 u, float v) {
     float weight;
     vec3 back = phaseDirection(s, direction, u, weight);
     vec3 scattering = vec3(0.0);
     for (int g = 0; g < MARCH_PHASE_GROUPS; ++g) scattering += s.scattering[g];
-    return scattering * weight * nearMedium(guide, number, position, back, sqrt(vpl.clampSquared), u, v);
+    return scattering * weight * nearMedium(guide, number, position, back, sqrt(clampSquared), u, v);
 }
 
 /// The same without following anything, as if light were even all around (validation: compensation algebra): with F the part that is lost of
 /// light that is scattered here, S = S_held + albedo F (S_direct + S).
-vec3 evenCompensation(vec3 held, Segment s, Ray ray, vec3 u, uint number) {
+vec3 evenCompensation(vec3 held, float clampSquared, Segment s, Ray ray, vec3 u, uint number) {
     vec3 scattering = vec3(0.0);
     for (int g = 0; g < MARCH_PHASE_GROUPS; ++g) scattering += s.scattering[g];
-    float reach = sqrt(vpl.clampSquared);
+    float reach = sqrt(clampSquared);
     vec3 albedo = min(scattering / max(s.depth, vec3(1e-30)), vec3(1.0));
     vec3 again = albedo * clampLoss(s.depth * (reach / s.size));
     Segment here = pointSegment(ray, 0.0, reach);
@@ -91,11 +97,12 @@ vec3 lightScatteredAlong(Ray ray, float distance, uvec2 pixel) {
             GatherPoint point = gatherBySegment(s, noise);
             vec3 position = ray.origin + ray.direction * (s.start + s.size * point.fraction);
             Guide guide = kNoGuide;
-            vec3 light = walksInMedium(number, position, ray.direction, s, vpl.clampSquared, guide);
+            float clampSquared = localClampSquared(s);
+            vec3 light = walksInMedium(number, position, ray.direction, s, clampSquared, guide);
 #if COMPENSATION == 1
-            light = evenCompensation(light, s, Ray(position, ray.direction), u.xyz, number);
+            light = evenCompensation(light, clampSquared, s, Ray(position, ray.direction), u.xyz, number);
 #elif COMPENSATION == 2
-            light += compensation(guide, number + other, position, ray.direction, s, u.xyz, u.w);
+            light += compensation(guide, clampSquared, number + other, position, ray.direction, s, u.xyz, u.w);
 #endif
             sum += exp(-before) * point.weight * light / expected;
             noise = fract(noise + 0.61803399);

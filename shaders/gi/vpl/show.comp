@@ -1,0 +1,46 @@
+// Virtual lights in the finished picture: as balls, green on surfaces and red in media; or what one of them sees, a colour for each triangle's plane.
+#include "gi/vpl/lights.glsl"
+
+layout(local_size_x = 8, local_size_y = 8) in;
+
+layout(std140) uniform Show { VplShowParams show; };
+uniform sampler2D depth;
+uniform sampler2D color;
+layout(rgba32f) writeonly uniform image2D shown;
+
+vec3 balls(Ray ray, float distance, vec3 picture) {
+    for (uint light = 0u; light < vpl.lightCount; ++light) {
+        vec3 way = vplLights[light].position.xyz - ray.origin;
+        float along = dot(way, ray.direction);
+        vec3 off = way - along * ray.direction;
+        float within = show.radius * show.radius - dot(off, off);
+        if (!(within > 0.0)) continue;
+        float t = along - sqrt(within);
+        if (!(t > 0.0) || t > distance + show.radius) continue;
+        distance = t;
+        float facing = sqrt(within) / show.radius;
+        picture = show.white * (0.2 + 0.6 * facing) * (vplLights[light].position.w < 0.0 ? vec3(0.1, 1.0, 0.1) : vec3(1.0, 0.1, 0.1));
+    }
+    return picture;
+}
+
+/// The map in the lower left corner, half as high as the picture.
+vec3 mapOf(uint light, ivec2 pixel, vec3 picture) {
+    float side = 0.5 * view.size.y;
+    vec2 at = vec2(pixel) / side;
+    if (vpl.mapSide == 0u || light >= vpl.lightCount || any(greaterThanEqual(at, vec2(1.0)))) return picture;
+    uvec2 texel = uvec2(at * float(vpl.mapSide));
+    uint id = vplMaps[(light * vpl.mapSide + texel.y) * vpl.mapSide + texel.x];
+    if (id == kVplNothing) return vec3(0.0);
+    return show.white * (0.5 + 0.5 * vplPlanes[id].xyz);
+}
+
+void main() {
+    ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
+    if (any(greaterThanEqual(pixel, imageSize(shown)))) return;
+    vec2 centre = vec2(pixel) + 0.5;
+    vec3 picture = texelFetch(color, pixel, 0).rgb;
+    float distance = rayDistanceFromDepth(centre, texelFetch(depth, pixel, 0).r);
+    picture = show.what == kVplShowLights ? balls(cameraRay(centre), distance, picture) : mapOf(show.light, pixel, picture);
+    imageStore(shown, pixel, vec4(picture, 1.0));
+}
