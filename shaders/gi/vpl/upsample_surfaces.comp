@@ -63,8 +63,8 @@ void main() {
         sum.diffuse /= max(total, 1e-30);
         sum.specular /= max(total, 1e-30);
         if (best < params.refineWeight) {
-            uint number = uint(pixelNoise(uvec2(pixel), 27u) * float(vpl.classes));
-            sum = gatherSurface(r, number % vpl.classes, vpl.classes, uvec2(pixel));
+            uint number = uint(pixelNoise(uvec2(pixel), 27u) * float(vpl.surfaceClasses));
+            sum = gatherSurface(r, number % vpl.surfaceClasses, vpl.surfaceClasses, uvec2(pixel));
         }
     } else {
         sum.diffuse = texelFetch(diffuse, pixel, 0).rgb;
