@@ -30,6 +30,8 @@ vec3 vplIntensity(uint light, vec3 direction) {
     return power * (value.diffuse + value.specular) * cosine;
 }
 
+const float kBesideTexels = 1.5; // a texel spans 4π/side² steradians: 3.545/side radians
+
 /// Does the light see the point? `direction`: unit, from the light. `normal`: of the facet that the point lies on; vec3(0) in a medium. A map names
 /// for each direction the plane of the first surface. A point behind that plane is in shadow, but on a facet only where what
 /// the light sees is before that facet: two sides of an edge do not shadow each other. No bias is needed, and walls may be thin.
@@ -50,8 +52,12 @@ bool vplSees(uint light, vec3 position, vec3 direction, float distance, vec3 nor
     vec3 middle = octahedralDecode((vec2(texel) + 0.5) / side * 2.0 - 1.0);
     float slope = dot(plane.xyz, middle);
     if (abs(slope) < 1e-6) return false;
-    vec3 seen = from - middle * (ofLight / slope);
-    return dot(normal, seen - position) <= rounding;
+    float seenDistance = -ofLight / slope;
+    vec3 seen = from + middle * seenDistance;
+    if (dot(normal, seen - position) <= rounding) return true;
+    // Mouldings and tiles: a facet that faces the same way a little farther back does not lie behind the other, but beside it.
+    vec3 towardsLight = ofLight < 0.0 ? -plane.xyz : plane.xyz;
+    return dot(towardsLight, normal) > 0.5 && distance - seenDistance < kBesideTexels * 3.545 / side * distance;
 }
 
 /// The nearest virtual light that sees a point: it stands for what the scene is like around there.
