@@ -32,7 +32,7 @@ struct VplParams {
     vec4 gridsMinimum;   // of the box around all grids, render space
     vec4 gridsMaximum;
     uint samples;        // points at which a ray through media gathers
-    uint padding0;
+    uint mediaInView;    // 0: the picture is seen through none
     uint padding1;
     uint padding2;
 };

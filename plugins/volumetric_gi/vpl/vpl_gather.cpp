@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <bit>
 
+#include "framegraph/hash.h"
+
 namespace tyndall::volumetric_gi {
 namespace {
 
@@ -54,7 +56,7 @@ struct GatherData {
 void declare(fg::Builder& builder, GatherData& data, const plugin::FrameInputs& inputs,
              const VplBuffers& lights, const VplGather& gather, int factor) {
     data.view = inputs.view;
-    if (inputs.media.count > 0 && inputs.transmittance) {
+    if (inputs.media.count > 0) { // in view or not: they attenuate what the lights send
         data.media = readMedia(builder, inputs.media);
         data.sceneLights = readLights(builder, inputs.lights);
     }
@@ -62,6 +64,7 @@ void declare(fg::Builder& builder, GatherData& data, const plugin::FrameInputs& 
     data.params = gather.params;
     data.march = inputs.march;
     data.march.factor = uint32_t(factor);
+    data.params.mediaInView = inputs.transmittance ? 1u : 0u;
 }
 
 void readSurfaces(fg::Builder& builder, GatherData& data, const plugin::FrameInputs& inputs) {
@@ -198,7 +201,9 @@ VplBuffers addVplUpload(fg::FrameGraph& graph, const plugin::FrameInputs& inputs
     buffers.walks = add("gi.vpl.walks", upload.set->walks, upload.lightsKey);
     buffers.maps = add("gi.vpl.maps", *upload.maps, upload.lightsKey);
     buffers.planes = add("gi.vpl.planes", *upload.planes, upload.planesKey);
-    buffers.depths = addDepthMaps(graph, inputs, buffers.lights, upload.lightsKey, params);
+    // Sizes are rounded up, so that the buffer's alone does not tell maps of one side from those of another.
+    const uint64_t depthsKey = fg::mixHash(upload.lightsKey, params.depthSide);
+    buffers.depths = addDepthMaps(graph, inputs, buffers.lights, depthsKey, params);
     return buffers;
 }
 
@@ -227,15 +232,17 @@ fg::TextureHandle addVplSurfaces(fg::FrameGraph& graph, const plugin::FrameInput
                 declare(builder, data, inputs, lights, gather, gather.surfaceFactor);
                 readSurfaces(builder, data, inputs);
                 for (int i = 0; i < 2; ++i) data.coarse[i] = builder.read(squares.result[i]);
-                if (inputs.media.count > 0 && inputs.transmittance)
-                    data.transmittance = builder.read(inputs.transmittance);
+                if (inputs.transmittance) data.transmittance = builder.read(inputs.transmittance);
                 data.result[0] = builder.create("gi.vpl.surfaceRadiance", picture(inputs, 1));
             },
             [](const GatherData& data, fg::PassContext& context) {
                 auto command =
                     begin(data, context, "gi/vpl/upsample_surfaces.comp", surfaceMode(data));
                 bindSurfaces(command, data.gbuffer);
-                if (data.transmittance) command.bind("transmittance", data.transmittance);
+                // Where no medium is in view it is not looked at, but has to be something.
+                if (data.media.count > 0)
+                    command.bind("transmittance",
+                                 data.transmittance ? data.transmittance : data.coarse[0]);
                 command.bind("diffuse", data.coarse[0])
                     .bind("specular", data.coarse[1])
                     .bind("surfaceRadiance", data.result[0])

@@ -36,9 +36,10 @@ const SettingDesc kVplSettings[] = {
     TYNDALL_FLOAT(
         VplSettings, clamp, "gi.vpl.clamp", "Bound", "", 0.0f, 100.0f, 1.0f,
         "Distance below which a virtual light counts as this far, over the mean distance between virtual lights."),
-    TYNDALL_FLOAT(VplSettings, surfaceClamp, "gi.vpl.surfaceClamp", "Bound between surfaces", "",
-                  0.0f, 100.0f, 0.5f,
-                  "The same for light from surface to surface, where nothing makes up for it."),
+    TYNDALL_FLOAT(
+        VplSettings, surfaceClamp, "gi.vpl.surfaceClamp", "Bound between surfaces", "", 0.0f,
+        100.0f, 0.5f,
+        "The same for light from surface to surface and, where it is less, from surfaces to media: nothing makes up for it."),
     TYNDALL_FLOAT(VplSettings, relaxed, "gi.vpl.relaxed", "Relaxed bound", "", 1.0f, 1000.0f, 4.0f,
                   "Traced compensation gathers with a bound at so many times less distance."),
     TYNDALL_FLOAT(

@@ -141,7 +141,7 @@ fg::BufferHandle VplTechnique::addStatistics(fg::FrameGraph& graph) {
 fg::TextureHandle VplTechnique::addPostPasses(fg::FrameGraph& graph,
                                               const plugin::FrameInputs& inputs,
                                               fg::TextureHandle color) {
-    const auto radius = float(kBall * meanDistance(1));
+    const float radius = settings_.show == 0 ? 0.0f : float(kBall * meanDistance(1));
     const fg::TextureHandle shown =
         addVplShow(graph, inputs, settings_, buffers_, gather_.params, radius, color);
     buffers_ = {}; // of this frame alone

@@ -2,6 +2,7 @@
 #include "common/octahedral.glsl"
 #include "media/optical_depth.glsl"
 #include "shared/vpl.h"
+#include "gi/vpl/depth_reach.glsl"
 
 layout(local_size_x = 64) in;
 
@@ -16,7 +17,7 @@ void main() {
     vec2 square = (vec2(texel % vpl.depthSide, texel / vpl.depthSide) + 0.5) / float(vpl.depthSide) * 2.0 - 1.0;
     vec3 direction = octahedralDecode(square);
     vec3 position = vplLights[light].position.xyz;
-    float reach = length(max(abs(position - vpl.gridsMinimum.xyz), abs(position - vpl.gridsMaximum.xyz)));
+    float reach = vplDepthReach(position, vpl);
     vec3 depth = vec3(0.0);
     uint first = (light * vpl.depthSide * vpl.depthSide + texel) * kVplDepthSteps;
     for (uint step = 0u; step < kVplDepthSteps; ++step) {

@@ -5,9 +5,8 @@
 #include "common/phase_function.glsl"
 #include "common/view.glsl"
 #include "lighting/brdf.glsl"
-#include "shared/vpl.h"
-
 #include "gi/vpl/bound.glsl"
+#include "shared/vpl.h"
 
 layout(std140) uniform Vpl { VplParams vpl; };
 layout(std430) readonly buffer VplLights { VplData vplLights[]; };
@@ -34,7 +33,8 @@ const float kBesideTexels = 1.5; // a texel spans 4π/side² steradians: 3.545/s
 
 /// Does the light see the point? `direction`: unit, from the light. `normal`: of the facet that the point lies on; vec3(0) in a medium. A map names
 /// for each direction the plane of the first surface. A point behind that plane is in shadow, but on a facet only where what
-/// the light sees is before that facet: two sides of an edge do not shadow each other. No bias is needed, and walls may be thin.
+/// the light sees is before that facet: two sides of an edge do not shadow each other. Walls may be thin; a bias have only facets that
+/// face the same way as what is seen.
 bool vplSees(uint light, vec3 position, vec3 direction, float distance, vec3 normal) {
     if (vpl.mapSide == 0u || distance < vplLights[light].power.w) return true;
     float side = float(vpl.mapSide);

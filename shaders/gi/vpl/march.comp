@@ -1,5 +1,5 @@
 // Light of virtual point lights that media scatter to the eye: one ray for each pixel, or for squares of them.
-// COMPENSATION: 0: what the bound takes away is missing; 2: traced.
+// COMPENSATION: kVplClamped, kVplClosedForm or kVplTraced.
 #include "gi/vpl/scattered_light.glsl"
 #include "media/nearest_rays.glsl"
 

@@ -3,12 +3,8 @@
 #ifndef TYNDALL_GI_VPL_OPTICAL_DEPTH
 #define TYNDALL_GI_VPL_OPTICAL_DEPTH
 #include "gi/vpl/lights.glsl"
+#include "gi/vpl/depth_reach.glsl"
 #include "media/optical_depth.glsl"
-
-/// Metres from a virtual light to beyond the last grid.
-float vplDepthReach(vec3 position) {
-    return length(max(abs(position - vpl.gridsMinimum.xyz), abs(position - vpl.gridsMaximum.xyz)));
-}
 
 vec3 vplDepthAt(uint column, uint step) {
     if (step == 0u) return vec3(0.0);
@@ -19,7 +15,7 @@ vec3 vplDepthAt(uint column, uint step) {
 /// `direction`: unit, from the light.
 vec3 vplGridDepth(uint light, vec3 direction, float distance) {
     float side = float(vpl.depthSide);
-    float along = clamp(distance / vplDepthReach(vplLights[light].position.xyz), 0.0, 1.0) * float(kVplDepthSteps);
+    float along = clamp(distance / vplDepthReach(vplLights[light].position.xyz, vpl), 0.0, 1.0) * float(kVplDepthSteps);
     uint step = min(uint(along), kVplDepthSteps - 1u);
     float part = along - float(step);
     vec2 at = clamp((octahedralEncode(direction) * 0.5 + 0.5) * side - 0.5, vec2(0.0), vec2(side - 1.0));

@@ -18,6 +18,7 @@ const float kDeep = 0.3; // optical depth over which light changes in a medium
 
 /// Of how much more medium one pixel is seen through than another: in thick fog light changes over a free path.
 float depthApart(ivec2 a, ivec2 b) {
+    if (vpl.mediaInView == 0u) return 0.0;
     vec3 quotient = max(texelFetch(transmittance, a, 0).rgb, vec3(1e-30)) / max(texelFetch(transmittance, b, 0).rgb, vec3(1e-30));
     return maximumOf(abs(log(quotient)));
 }
