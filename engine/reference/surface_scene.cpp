@@ -216,16 +216,20 @@ bool SurfaceScene::occluded(const Ray& ray, double farthest, uint64_t chance) co
     return shadow.tfar < 0;
 }
 
-std::vector<vec4> SurfaceScene::planes() const {
-    std::vector<vec4> planes;
-    planes.reserve(triangleCount_);
-    for (const MeshInstance& instance : instances_)
-        for (size_t i = 0; i < instance.mesh->indices.size() / 3; ++i) {
-            const dvec3 normal = unitOr(facetOf(instance, uint32_t(i)), dvec3(0));
-            const dvec3 corner(instance.positions[instance.mesh->indices[3 * i]]);
-            planes.push_back(vec4(vec3(normal), float(-glm::dot(normal, corner))));
+std::vector<SceneTriangle> SurfaceScene::triangles() const {
+    std::vector<SceneTriangle> all;
+    all.reserve(triangleCount_);
+    for (const MeshInstance& instance : instances_) {
+        const std::vector<uint32_t>& indices = instance.mesh->indices;
+        const bool opaque = instance.material->alphaMode == AlphaMode::Opaque;
+        for (size_t i = 0; i + 2 < indices.size(); i += 3) {
+            SceneTriangle& triangle = all.emplace_back();
+            triangle.opaque = opaque;
+            for (size_t k = 0; k < 3; ++k)
+                triangle.corners[k] = dvec3(instance.positions[indices[i + k]]);
         }
-    return planes;
+    }
+    return all;
 }
 
 VertexValues SurfaceScene::vertexValues(const RayHit& hit) const {

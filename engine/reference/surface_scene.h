@@ -4,6 +4,7 @@
 // Surfaces with holes (MASK) or of partial coverage (BLEND) let a ray pass by chance, decided by the ray's own random
 // number. One-sided surfaces seen from behind are passed by camera rays alone. Lines and points have no area: no ray meets them.
 
+#include <array>
 #include <memory>
 #include <string>
 #include <vector>
@@ -48,6 +49,11 @@ struct SurfacePoint {
     double margin = 0; // metres by which rays from here must start off the surface
 };
 
+struct SceneTriangle {
+    std::array<dvec3, 3> corners{}; // ray space
+    bool opaque = true;             // false: rays pass parts of it
+};
+
 enum class RayKind { Camera = 0, Path = 1 };
 
 class SurfaceScene {
@@ -71,8 +77,8 @@ public:
     [[nodiscard]] std::vector<MeshInstance>& mutableInstances() { return instances_; }
     [[nodiscard]] const MaterialReader& materials() const { return materials_; }
     [[nodiscard]] size_t triangleCount() const { return triangleCount_; }
-    /// n·p = d of the plane that a triangle lies in, as (n, -d), ray space; 0 for one without area. `triangle` counts through all instances.
-    [[nodiscard]] std::vector<vec4> planes() const;
+    /// All of them, instance by instance.
+    [[nodiscard]] std::vector<SceneTriangle> triangles() const;
     /// Of all triangles, in ray space; empty without any.
     [[nodiscard]] const Bounds& bounds() const { return bounds_; }
     /// Sentences on what is left out.

@@ -1,10 +1,10 @@
-// Virtual point lights: buffers `VplLights`, `VplWalks`, `VplMaps` and `VplPlanes`, and the parameters of who gathers them.
+// Virtual point lights: buffers `VplLights`, `VplWalks`, `VplMaps` and `VplTriangles`, and the parameters of who gathers them.
 #ifndef TYNDALL_SHARED_VPL_H
 #define TYNDALL_SHARED_VPL_H
 #include "shared/types.h"
 TYNDALL_SHARED_BEGIN
 
-TYNDALL_CONST uint kVplDepthSteps = 16u; // distances of a map of optical depth
+TYNDALL_CONST uint kVplDepthSteps = 16u;      // distances of a map of optical depth
 TYNDALL_CONST uint kVplNothing = 0xffffffffu; // in a map: nothing is seen in this direction
 
 struct VplData {
@@ -12,27 +12,38 @@ struct VplData {
     vec4 normal;   // of the facet, unit, on the side that light came from; w: roughness
     vec4 shading;  // shading normal, unit; w: weight of the dielectric's coat
     vec4 travel;   // unit, of the light that arrives; w: parameter g of the phase function
-    vec4 power;    // watts over all walks: on a surface what arrives, in a medium what is scattered; w: metres to the nearest surface that the light sees
-    vec4 base;     // base colour; w: metallic
+    vec4
+        power; // watts over all walks: on a surface what arrives, in a medium what is scattered; w: metres to the nearest surface that the light sees
+    vec4 base; // base colour; w: metallic
+};
+
+/// A triangle as what hides light.
+struct VplTriangle {
+    vec4 plane;  // n·p + w = 0, n unit; 0 without area
+    vec4 corner; // render space; w: the least height, metres; 0 where rays may pass
+    vec4
+        second; // along the edges from the corner: dot(second.xyz, p - corner) is p's barycentric coordinate of the second corner
+    vec4 third; // the same of the third
 };
 
 struct VplParams {
     uint lightCount;
     uint walkCount;
-    uint classes;        // walks with equal number modulo this are gathered together, at one point of a ray; 1: all
+    uint
+        classes; // walks with equal number modulo this are gathered together, at one point of a ray; 1: all
     uint surfaceClasses; // the same for a surface
     uint mapSide;        // texels along an edge of a visibility map; 0: nothing is hidden
     uint compensation;   // kVplClamped and so on
     uint lightsOfScene;  // that compensation gathers straight
-    float relaxed;       // the bound's distance over that of the bound with which compensation gathers
-    float clampSquared;  // m²: 1/b; where light or receiver are in a medium
+    float relaxed; // the bound's distance over that of the bound with which compensation gathers
+    float clampSquared;        // m²: 1/b; where light or receiver are in a medium
     float surfaceClampSquared; // m²: 1/b from surface to surface
-    float leastRoughness; // of virtual lights and of what they shine on
-    uint depthSide;      // texels along an edge of a light's map of optical depth; 0: grids are marched
-    vec4 gridsMinimum;   // of the box around all grids, render space
+    float leastRoughness;      // of virtual lights and of what they shine on
+    uint depthSide; // texels along an edge of a light's map of optical depth; 0: grids are marched
+    vec4 gridsMinimum; // of the box around all grids, render space
     vec4 gridsMaximum;
-    uint samples;        // points at which a ray through media gathers
-    uint mediaInView;    // 0: the picture is seen through none
+    uint samples;     // points at which a ray through media gathers
+    uint mediaInView; // 0: the picture is seen through none
     uint padding1;
     uint padding2;
 };

@@ -188,7 +188,7 @@ fg::BufferHandle addDepthMaps(fg::FrameGraph& graph, const plugin::FrameInputs& 
 
 VplBuffers readVpls(fg::Builder& builder, const VplBuffers& buffers) {
     return {builder.read(buffers.lights), builder.read(buffers.walks), builder.read(buffers.maps),
-            builder.read(buffers.planes), builder.read(buffers.depths)};
+            builder.read(buffers.triangles), builder.read(buffers.depths)};
 }
 
 VplBuffers addVplUpload(fg::FrameGraph& graph, const plugin::FrameInputs& inputs,
@@ -200,7 +200,7 @@ VplBuffers addVplUpload(fg::FrameGraph& graph, const plugin::FrameInputs& inputs
     buffers.lights = add("gi.vpl.lights", upload.set->lights, upload.lightsKey);
     buffers.walks = add("gi.vpl.walks", upload.set->walks, upload.lightsKey);
     buffers.maps = add("gi.vpl.maps", *upload.maps, upload.lightsKey);
-    buffers.planes = add("gi.vpl.planes", *upload.planes, upload.planesKey);
+    buffers.triangles = add("gi.vpl.triangles", *upload.triangles, upload.trianglesKey);
     // Sizes are rounded up, so that the buffer's alone does not tell maps of one side from those of another.
     const uint64_t depthsKey = fg::mixHash(upload.lightsKey, params.depthSide);
     buffers.depths = addDepthMaps(graph, inputs, buffers.lights, depthsKey, params);

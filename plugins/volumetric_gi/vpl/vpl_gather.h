@@ -8,7 +8,7 @@
 namespace tyndall::volumetric_gi {
 
 struct VplBuffers {
-    fg::BufferHandle lights, walks, maps, planes;
+    fg::BufferHandle lights, walks, maps, triangles;
     fg::BufferHandle depths; // of grids; null: without
 };
 
@@ -22,16 +22,16 @@ Command& bindVpls(Command& command, const VplBuffers& buffers, const gpu::VplPar
         .bind("VplLights", buffers.lights)
         .bind("VplWalks", buffers.walks)
         .bind("VplMaps", buffers.maps)
-        .bind("VplPlanes", buffers.planes)
+        .bind("VplTriangles", buffers.triangles)
         .bind("VplDepths", buffers.depths);
 }
 
-/// What goes up; must live until the frame has been executed. `lightsKey`, `planesKey`: of its content.
+/// What goes up; must live until the frame has been executed. `lightsKey`, `trianglesKey`: of its content.
 struct VplUpload {
     const VplSet* set = nullptr;
     const std::vector<uint32_t>* maps = nullptr;
-    const std::vector<vec4>* planes = nullptr;
-    uint64_t lightsKey = 0, planesKey = 0;
+    const std::vector<gpu::VplTriangle>* triangles = nullptr;
+    uint64_t lightsKey = 0, trianglesKey = 0;
 };
 
 /// How lights are gathered.

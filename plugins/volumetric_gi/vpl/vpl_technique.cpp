@@ -11,8 +11,8 @@
 namespace tyndall::volumetric_gi {
 namespace {
 
-/// Rounds of loops that one invocation of a shader may run: llvmpipe ends them all at 65,535, and each light gathered takes some.
-constexpr double kMostRounds = 16000;
+/// Rounds of loops that one invocation of a shader may run: llvmpipe ends them all at 65,535, and each light gathered takes nine.
+constexpr double kMostRounds = 7000;
 /// Of a light that is shown, part of the mean distance between lights.
 constexpr double kBall = 0.08;
 
@@ -41,8 +41,8 @@ void VplTechnique::makeLights(const plugin::FrameInputs& inputs) {
     maps_.clear();
     if (settings_.mapSide > 0 && surfaces.triangleCount() > 0)
         maps_ = makeVisibilityMaps(surfaces, set_, uint32_t(settings_.mapSide), generation);
-    if (planesKey_ != scene_.surfacesKey()) planes_ = surfaces.planes();
-    planesKey_ = scene_.surfacesKey();
+    if (trianglesKey_ != scene_.surfacesKey()) triangles_ = packTriangles(surfaces);
+    trianglesKey_ = scene_.surfacesKey();
     lightsKey_ = key;
 }
 
@@ -102,7 +102,7 @@ plugin::FrameOutputs VplTechnique::addPasses(fg::FrameGraph& graph,
     }
     makeLights(inputs);
     gather_ = gather(inputs);
-    buffers_ = addVplUpload(graph, inputs, {&set_, &maps_, &planes_, lightsKey_, planesKey_},
+    buffers_ = addVplUpload(graph, inputs, {&set_, &maps_, &triangles_, lightsKey_, trianglesKey_},
                             gather_.params);
     plugin::FrameOutputs outputs;
     if (inputs.terms & kIndirectOnSurfaces)

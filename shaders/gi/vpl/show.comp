@@ -1,4 +1,4 @@
-// Virtual lights in the finished picture: as balls, green on surfaces and red in media; or what one of them sees, a colour for each triangle's plane.
+// Virtual lights in the finished picture: as balls, green on surfaces and red in media; or what one of them sees, a colour for each triangle's normal.
 #include "gi/vpl/lights.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
@@ -32,7 +32,7 @@ vec3 mapOf(uint light, ivec2 pixel, vec3 picture) {
     uvec2 texel = uvec2(at * float(vpl.mapSide));
     uint id = vplMaps[(light * vpl.mapSide + texel.y) * vpl.mapSide + texel.x];
     if (id == kVplNothing) return vec3(0.0);
-    return show.white * (0.5 + 0.5 * vplPlanes[id].xyz);
+    return show.white * (0.5 + 0.5 * vplTriangles[id].plane.xyz);
 }
 
 void main() {
