@@ -20,10 +20,17 @@ struct VplData {
 /// A triangle as what hides light.
 struct VplTriangle {
     vec4 plane;  // n·p + w = 0, n unit; 0 without area
-    vec4 corner; // render space; w: the least height, metres; 0 where rays may pass
-    vec4
-        second; // along the edges from the corner: dot(second.xyz, p - corner) is p's barycentric coordinate of the second corner
-    vec4 third; // the same of the third
+    vec4 corner; // render space; w: 0 where rays may pass, else 1
+    vec4 second; // dot(second.xyz, p - corner): barycentric coordinate of the second corner
+    vec4 third;  // the same of the third
+};
+
+/// As reference::TreeNode.
+struct VplTreeNode {
+    vec3 minimum;
+    uint next;
+    vec3 maximum;
+    uint triangle; // kVplNothing: an inner node
 };
 
 struct VplParams {
@@ -44,8 +51,8 @@ struct VplParams {
     vec4 gridsMaximum;
     uint samples;     // points at which a ray through media gathers
     uint mediaInView; // 0: the picture is seen through none
-    uint padding1;
-    uint padding2;
+    uint treeSize;    // nodes; 0: nothing is hidden
+    uint padding;
 };
 
 struct VplShowParams {

@@ -187,8 +187,9 @@ fg::BufferHandle addDepthMaps(fg::FrameGraph& graph, const plugin::FrameInputs& 
 } // namespace
 
 VplBuffers readVpls(fg::Builder& builder, const VplBuffers& buffers) {
-    return {builder.read(buffers.lights), builder.read(buffers.walks), builder.read(buffers.maps),
-            builder.read(buffers.triangles), builder.read(buffers.depths)};
+    return {builder.read(buffers.lights), builder.read(buffers.walks),
+            builder.read(buffers.maps),   builder.read(buffers.triangles),
+            builder.read(buffers.tree),   builder.read(buffers.depths)};
 }
 
 VplBuffers addVplUpload(fg::FrameGraph& graph, const plugin::FrameInputs& inputs,
@@ -201,6 +202,7 @@ VplBuffers addVplUpload(fg::FrameGraph& graph, const plugin::FrameInputs& inputs
     buffers.walks = add("gi.vpl.walks", upload.set->walks, upload.lightsKey);
     buffers.maps = add("gi.vpl.maps", *upload.maps, upload.lightsKey);
     buffers.triangles = add("gi.vpl.triangles", *upload.triangles, upload.trianglesKey);
+    buffers.tree = add("gi.vpl.tree", *upload.tree, upload.trianglesKey);
     // Sizes are rounded up, so that the buffer's alone does not tell maps of one side from those of another.
     const uint64_t depthsKey = fg::mixHash(upload.lightsKey, params.depthSide);
     buffers.depths = addDepthMaps(graph, inputs, buffers.lights, depthsKey, params);

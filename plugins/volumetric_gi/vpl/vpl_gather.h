@@ -2,13 +2,14 @@
 // Virtual point lights on the GPU: their buffers, and what they do in the picture.
 
 #include "plugin/plugin_api.h"
+#include "reference/triangle_tree.h"
 #include "shared/vpl.h"
 #include "volumetric_gi/vpl/vpl_walks.h"
 
 namespace tyndall::volumetric_gi {
 
 struct VplBuffers {
-    fg::BufferHandle lights, walks, maps, triangles;
+    fg::BufferHandle lights, walks, maps, triangles, tree;
     fg::BufferHandle depths; // of grids; null: without
 };
 
@@ -23,6 +24,7 @@ Command& bindVpls(Command& command, const VplBuffers& buffers, const gpu::VplPar
         .bind("VplWalks", buffers.walks)
         .bind("VplMaps", buffers.maps)
         .bind("VplTriangles", buffers.triangles)
+        .bind("VplTree", buffers.tree)
         .bind("VplDepths", buffers.depths);
 }
 
@@ -31,6 +33,7 @@ struct VplUpload {
     const VplSet* set = nullptr;
     const std::vector<uint32_t>* maps = nullptr;
     const std::vector<gpu::VplTriangle>* triangles = nullptr;
+    const std::vector<reference::TreeNode>* tree = nullptr;
     uint64_t lightsKey = 0, trianglesKey = 0;
 };
 

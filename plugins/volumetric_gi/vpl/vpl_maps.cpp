@@ -22,23 +22,6 @@ dvec3 octahedralDecode(const dvec2& square) {
     return glm::normalize(p);
 }
 
-gpu::VplTriangle pack(const reference::SceneTriangle& from) {
-    gpu::VplTriangle triangle{};
-    const dvec3 &corner = from.corners[0], a = from.corners[1] - corner,
-                b = from.corners[2] - corner;
-    triangle.corner = vec4(vec3(corner), 0);
-    const dvec3 across = glm::cross(a, b);
-    const double twiceArea = glm::length(across);
-    if (!(twiceArea > 0)) return triangle;
-    const dvec3 normal = across / twiceArea;
-    triangle.plane = vec4(vec3(normal), float(-glm::dot(normal, corner)));
-    triangle.second = vec4(vec3(glm::cross(b, normal) / twiceArea), 0);
-    triangle.third = vec4(vec3(glm::cross(normal, a) / twiceArea), 0);
-    const double longest = std::max({glm::length(a), glm::length(b), glm::length(b - a)});
-    if (from.opaque) triangle.corner.w = float(twiceArea / longest);
-    return triangle;
-}
-
 /// Directions so far below a light's facet are in no texel that a direction above it falls into.
 double lowestCosine(uint32_t side) { return -8.0 / double(side); }
 
@@ -79,13 +62,6 @@ std::vector<uint32_t> makeVisibilityMaps(const reference::SurfaceScene& surfaces
         }
     });
     return maps;
-}
-
-std::vector<gpu::VplTriangle> packTriangles(const reference::SurfaceScene& surfaces) {
-    const std::vector<reference::SceneTriangle> from = surfaces.triangles();
-    std::vector<gpu::VplTriangle> packed(from.size());
-    std::transform(from.begin(), from.end(), packed.begin(), pack);
-    return packed;
 }
 
 } // namespace tyndall::volumetric_gi

@@ -13,7 +13,4 @@ namespace tyndall::volumetric_gi {
 std::vector<uint32_t> makeVisibilityMaps(const reference::SurfaceScene& surfaces, VplSet& set,
                                          uint32_t side, uint32_t jitter);
 
-/// Of SurfaceScene::triangles(), in their order.
-std::vector<gpu::VplTriangle> packTriangles(const reference::SurfaceScene& surfaces);
-
 } // namespace tyndall::volumetric_gi

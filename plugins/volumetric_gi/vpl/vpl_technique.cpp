@@ -11,8 +11,11 @@
 namespace tyndall::volumetric_gi {
 namespace {
 
-/// Rounds of loops that one invocation of a shader may run: llvmpipe ends them all at 65,535, and each light gathered takes nine.
-constexpr double kMostRounds = 7000;
+/// Rounds of loops that one invocation of a shader may run: llvmpipe ends them all at 65,535.
+constexpr double kMostRounds = 60000;
+/// Of each light that is gathered; and of each walk through the tree over its depth, where a map leaves a doubt.
+constexpr double kRoundsOfLight = 4, kRoundsOfDoubt = 2;
+
 /// Of a light that is shown, part of the mean distance between lights.
 constexpr double kBall = 0.08;
 
@@ -41,8 +44,6 @@ void VplTechnique::makeLights(const plugin::FrameInputs& inputs) {
     maps_.clear();
     if (settings_.mapSide > 0 && surfaces.triangleCount() > 0)
         maps_ = makeVisibilityMaps(surfaces, set_, uint32_t(settings_.mapSide), generation);
-    if (trianglesKey_ != scene_.surfacesKey()) triangles_ = packTriangles(surfaces);
-    trianglesKey_ = scene_.surfacesKey();
     lightsKey_ = key;
 }
 
@@ -61,14 +62,17 @@ VplGather VplTechnique::gather(const plugin::FrameInputs& inputs) const {
     gpu::VplParams& params = gather.params;
     params.lightCount = uint32_t(set_.lights.size());
     params.walkCount = uint32_t(set_.walks.size()) - 1;
+    const double rounds =
+        kRoundsOfLight + kRoundsOfDoubt * std::log2(double(scene_.tree().size()) + 1);
     const auto classes = [&](int32_t wanted, double points) {
-        const double least = double(params.lightCount) * points / kMostRounds;
+        const double least = double(params.lightCount) * points * rounds / kMostRounds;
         return uint32_t(std::clamp(std::max(double(wanted), std::ceil(least)), 1.0,
                                    double(std::max(params.walkCount, 1u))));
     };
     params.classes = classes(settings_.classes, 2 * double(settings_.samples)); // with compensation
     params.surfaceClasses = classes(settings_.surfaceClasses, 1);
     params.mapSide = maps_.empty() ? 0 : uint32_t(settings_.mapSide);
+    params.treeSize = settings_.mapSide > 0 ? uint32_t(scene_.tree().size()) : 0;
     // The bound follows from all lights of an average: what it takes away tends to nothing as frames come.
     const double mean = meanDistance(converges(inputs) ? inputs.view.data.frameIndex + 1 : 1);
     const auto squared = [](double x) { return float(x * x); };
@@ -102,8 +106,10 @@ plugin::FrameOutputs VplTechnique::addPasses(fg::FrameGraph& graph,
     }
     makeLights(inputs);
     gather_ = gather(inputs);
-    buffers_ = addVplUpload(graph, inputs, {&set_, &maps_, &triangles_, lightsKey_, trianglesKey_},
-                            gather_.params);
+    buffers_ = addVplUpload(
+        graph, inputs,
+        {&set_, &maps_, &scene_.triangles(), &scene_.tree(), lightsKey_, scene_.surfacesKey()},
+        gather_.params);
     plugin::FrameOutputs outputs;
     if (inputs.terms & kIndirectOnSurfaces)
         outputs.surfaceRadiance = addVplSurfaces(graph, inputs, buffers_, gather_);

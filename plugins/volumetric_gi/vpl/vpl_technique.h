@@ -33,8 +33,7 @@ private:
     TracedScene scene_;
     VplSet set_;
     std::vector<uint32_t> maps_;
-    std::vector<gpu::VplTriangle> triangles_;
-    uint64_t lightsKey_ = 0, trianglesKey_ = 0;
+    uint64_t lightsKey_ = 0;
     std::string said_;
     VplBuffers buffers_; // of this frame
     VplGather gather_;

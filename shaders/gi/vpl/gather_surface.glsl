@@ -4,7 +4,7 @@
 #include "gi/vpl/near_medium.glsl"
 #else
 #include "common/random.glsl"
-#include "gi/vpl/lights.glsl"
+#include "gi/vpl/visibility.glsl"
 #endif
 #include "shared/gbuffer.h"
 
@@ -50,7 +50,7 @@ void addLight(inout SurfaceLight sum, Receiver r, vec3 direction, vec3 irradianc
     sum.specular += irradiance * evaluateBrdf(r.brdf, r.normal, r.toEye, direction).specular;
 }
 
-void addLightFrom(inout SurfaceLight sum, uint light, Receiver r, inout Guide guide) {
+void addLightFrom(inout SurfaceLight sum, uint light, Receiver r) {
     vec3 way = vplLights[light].position.xyz - r.position;
     float squared = dot(way, way);
     float distance = sqrt(squared);
@@ -59,8 +59,7 @@ void addLightFrom(inout SurfaceLight sum, uint light, Receiver r, inout Guide gu
     float cosine = dot(r.normal, direction);
     if (!(facing > 0.0) || !(cosine > 0.0)) return;
     vec3 intensity = vplIntensity(light, -direction);
-    if (!(maximumOf(intensity) > 0.0) || !vplSees(light, r.position, -direction, distance, r.facet)) return;
-    consider(guide, light, squared);
+    if (!(maximumOf(intensity) > 0.0) || !vplSees(light, r.position, -direction, distance)) return;
     bool onSurface = vplLights[light].position.w < 0.0;
     float cosines = facing * (onSurface ? dot(vplLights[light].normal.xyz, -direction) : 1.0);
     vec3 irradiance = intensity * (cosine * heldInverseSquare(squared, cosines, onSurface ? vpl.surfaceClampSquared : vpl.clampSquared));
@@ -73,9 +72,8 @@ void addLightFrom(inout SurfaceLight sum, uint light, Receiver r, inout Guide gu
 /// Of the walks from `number` on, every `stride`-th.
 SurfaceLight gatherSurface(Receiver r, uint number, uint stride, uvec2 pixel) {
     SurfaceLight sum = SurfaceLight(vec3(0.0), vec3(0.0));
-    Guide guide = kNoGuide;
     for (uint walk = number; walk < vpl.walkCount; walk += stride)
-        for (uint light = vplWalks[walk]; light < vplWalks[walk + 1u]; ++light) addLightFrom(sum, light, r, guide);
+        for (uint light = vplWalks[walk]; light < vplWalks[walk + 1u]; ++light) addLightFrom(sum, light, r);
     sum.diffuse *= float(stride);
     sum.specular *= float(stride);
 #if MEDIA && COMPENSATION == 2
@@ -87,7 +85,7 @@ SurfaceLight gatherSurface(Receiver r, uint number, uint stride, uvec2 pixel) {
     float cosine = dot(r.normal, direction);
     if (cosine > 0.0) {
         vec4 noise = pixelRandom(pixel, 14u);
-        vec3 near = nearMedium(guide, uint(u.z * float(vpl.classes)), r.position, direction, sqrt(vpl.clampSquared * z), noise.xyz, noise.w);
+        vec3 near = nearMedium(uint(u.z * float(vpl.classes)), r.position, direction, sqrt(vpl.clampSquared * z), noise.xyz, noise.w);
         addLight(sum, r, direction, near * (kPi * cosine / max(z, 1e-3)));
     }
 #endif

@@ -6,16 +6,16 @@
 #include "common/random.glsl"
 #include "media/march.glsl"
 #include "gi/vpl/optical_depth.glsl"
+#include "gi/vpl/visibility.glsl"
 
 /// Light of one virtual light that a segment's media scatter against `direction`: nits, before the segment's own extinction.
-vec3 lightInMedium(uint light, vec3 position, vec3 direction, Segment s, float clampSquared, inout Guide guide) {
+vec3 lightInMedium(uint light, vec3 position, vec3 direction, Segment s, float clampSquared) {
     vec3 way = vplLights[light].position.xyz - position;
     float squared = dot(way, way);
     float distance = sqrt(squared);
     vec3 towards = distance > 0.0 ? way / distance : direction;
     vec3 intensity = vplIntensity(light, -towards);
-    if (!(maximumOf(intensity) > 0.0) || !vplSees(light, position, -towards, distance, vec3(0.0))) return vec3(0.0);
-    consider(guide, light, squared);
+    if (!(maximumOf(intensity) > 0.0) || !vplSees(light, position, -towards, distance)) return vec3(0.0);
     bool onSurface = vplLights[light].position.w < 0.0;
     float cosines = onSurface ? dot(vplLights[light].normal.xyz, -towards) : 1.0;
     // What nothing makes up for is held less.
@@ -24,10 +24,10 @@ vec3 lightInMedium(uint light, vec3 position, vec3 direction, Segment s, float c
     return scatteredLight(s, dot(towards, direction), depth) * intensity * perArea;
 }
 
-vec3 walksInMedium(uint number, vec3 position, vec3 direction, Segment s, float clampSquared, inout Guide guide) {
+vec3 walksInMedium(uint number, vec3 position, vec3 direction, Segment s, float clampSquared) {
     vec3 sum = vec3(0.0);
     for (uint walk = number % vpl.classes; walk < vpl.walkCount; walk += vpl.classes)
-        for (uint light = vplWalks[walk]; light < vplWalks[walk + 1u]; ++light) sum += lightInMedium(light, position, direction, s, clampSquared, guide);
+        for (uint light = vplWalks[walk]; light < vplWalks[walk + 1u]; ++light) sum += lightInMedium(light, position, direction, s, clampSquared);
     return sum * float(vpl.classes);
 }
 
@@ -43,16 +43,14 @@ Segment pointSegment(Ray ray, float at, float scale) {
 }
 
 /// ∫ (1 - t²/reach²) · transmittance · light that media scatter towards `position`, over t from 0 to reach along `direction`. The distance is drawn by
-/// the first factor, so that it weighs nothing. What is gathered there has the bound relaxed, and misses what that takes away. No ray is cast: what the
-/// nearest light that sees `position` does not see counts as behind a wall (section 4.4, local visibility).
-vec3 nearMedium(Guide guide, uint number, vec3 position, vec3 direction, float reach, vec3 u, float v) {
+/// the first factor, so that it weighs nothing. What is gathered there has the bound relaxed, and misses what that takes away.
+vec3 nearMedium(uint number, vec3 position, vec3 direction, float reach, vec3 u, float v) {
     float t = reach * 2.0 * sin(asin(v) / 3.0);
     Ray ray = Ray(position, direction);
     Segment there = pointSegment(ray, t, reach);
     vec3 at = position + direction * t;
-    if (!there.scatters || !guideSees(guide, at)) return vec3(0.0);
-    Guide other = kNoGuide;
-    vec3 light = walksInMedium(number, at, direction, there, min(vpl.clampSquared, reach * reach) / (vpl.relaxed * vpl.relaxed), other);
+    if (!there.scatters || triangleBetween(position, at)) return vec3(0.0);
+    vec3 light = walksInMedium(number, at, direction, there, min(vpl.clampSquared, reach * reach) / (vpl.relaxed * vpl.relaxed));
     light += segmentInScatter(ray, there, vpl.lightsOfScene, u, number);
     return 2.0 / 3.0 * reach * exp(-opticalDepthAlong(position, direction, t)) * light;
 }

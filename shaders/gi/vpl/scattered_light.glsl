@@ -29,12 +29,12 @@ float localClampSquared(Segment s) {
 }
 
 /// What the bound takes away from the light that a segment scatters at `position`.
-vec3 compensation(Guide guide, float clampSquared, uint number, vec3 position, vec3 direction, Segment s, vec3 u, float v) {
+vec3 compensation(float clampSquared, uint number, vec3 position, vec3 direction, Segment s, vec3 u, float v) {
     float weight;
     vec3 back = phaseDirection(s, direction, u, weight);
     vec3 scattering = vec3(0.0);
     for (int g = 0; g < MARCH_PHASE_GROUPS; ++g) scattering += s.scattering[g];
-    return scattering * weight * nearMedium(guide, number, position, back, sqrt(clampSquared), u, v);
+    return scattering * weight * nearMedium(number, position, back, sqrt(clampSquared), u, v);
 }
 
 /// The same without following anything, as if light were even all around (validation: compensation algebra): with F the part that is lost of
@@ -96,13 +96,12 @@ vec3 lightScatteredAlong(Ray ray, float distance, uvec2 pixel) {
             ++number;
             GatherPoint point = gatherBySegment(s, noise);
             vec3 position = ray.origin + ray.direction * (s.start + s.size * point.fraction);
-            Guide guide = kNoGuide;
             float clampSquared = localClampSquared(s);
-            vec3 light = walksInMedium(number, position, ray.direction, s, clampSquared, guide);
+            vec3 light = walksInMedium(number, position, ray.direction, s, clampSquared);
 #if COMPENSATION == 1
             light = evenCompensation(light, clampSquared, s, Ray(position, ray.direction), u.xyz, number);
 #elif COMPENSATION == 2
-            light += compensation(guide, clampSquared, number + other, position, ray.direction, s, u.xyz, u.w);
+            light += compensation(clampSquared, number + other, position, ray.direction, s, u.xyz, u.w);
 #endif
             sum += exp(-before) * point.weight * light / expected;
             noise = fract(noise + 0.61803399);

@@ -1,5 +1,5 @@
 // Virtual lights in the finished picture: as balls, green on surfaces and red in media; or what one of them sees, a colour for each triangle's normal.
-#include "gi/vpl/lights.glsl"
+#include "gi/vpl/visibility.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 

@@ -1,0 +1,78 @@
+// What virtual point lights see. A light's map names, for each direction, the triangle that it sees first; where that leaves a doubt, all triangles are
+// asked, in a tree of boxes that is walked without a stack.
+#ifndef TYNDALL_GI_VPL_VISIBILITY
+#define TYNDALL_GI_VPL_VISIBILITY
+#include "gi/vpl/lights.glsl"
+
+layout(std430) readonly buffer VplMaps { uint vplMaps[]; }; // for each light mapSide² numbers of triangles, by direction
+layout(std430) readonly buffer VplTriangles { VplTriangle vplTriangles[]; };
+layout(std430) readonly buffer VplTree { VplTreeNode vplTree[]; };
+
+const float kVplRounding = 1e-4; // of distances and coordinates: nearer to a plane than this a point counts as on it
+const float kVplSeam = 1e-4;     // barycentric: neighbours overlap, so that nothing comes through between them
+
+const uint kHides = 1u;
+const uint kDoubtful = 2u; // the points are on different sides of the triangle's plane, but it does not lie between them
+const uint kVeils = 4u;    // it does, but rays may pass: hidden is what the map's ray of the very direction did not pass to
+
+uint triangleSays(uint id, vec3 from, vec3 to, float rounding) {
+    if (id == kVplNothing) return 0u;
+    VplTriangle triangle = vplTriangles[id];
+    float ofFrom = dot(triangle.plane.xyz, from) + triangle.plane.w;
+    float ofTo = dot(triangle.plane.xyz, to) + triangle.plane.w;
+    if (min(abs(ofFrom), abs(ofTo)) <= rounding || ofFrom * ofTo >= 0.0) return 0u;
+    vec3 off = mix(from, to, ofFrom / (ofFrom - ofTo)) - triangle.corner.xyz;
+    float second = dot(triangle.second.xyz, off);
+    float third = dot(triangle.third.xyz, off);
+    bool crossed = min(second, third) > -kVplSeam && second + third < 1.0 + kVplSeam;
+    if (triangle.corner.w == 0.0) return crossed ? kVeils : 0u;
+    return crossed ? kHides : kDoubtful;
+}
+
+/// Does a triangle lie between two points? Nothing within rounding of either counts: both may lie on surfaces.
+bool triangleBetween(vec3 from, vec3 to) {
+    vec3 way = to - from;
+    float rounding = kVplRounding * (length(way) + length(to));
+    vec3 inverse = 1.0 / mix(way, vec3(1e-20), equal(way, vec3(0.0)));
+    uint node = 0u;
+    while (node < vpl.treeSize) {
+        VplTreeNode here = vplTree[node];
+        vec3 low = (here.minimum - from) * inverse;
+        vec3 high = (here.maximum - from) * inverse;
+        float enter = max(maximumOf(min(low, high)), 0.0);
+        float leave = min(minimumOf(max(low, high)), 1.0);
+        bool inside = enter <= leave * (1.0 + 1e-5); // boxes may be flat
+        if (inside && triangleSays(here.triangle, from, to, rounding) == kHides) return true;
+        node = inside ? node + 1u : here.next;
+    }
+    return false;
+}
+
+/// Over an edge of the square an octahedron's map goes on turned about the edge's middle.
+uint vplTriangleAt(uint light, ivec2 texel) {
+    int side = int(vpl.mapSide);
+    if (texel.x < 0 || texel.x >= side) texel = ivec2(texel.x < 0 ? 0 : side - 1, side - 1 - texel.y);
+    if (texel.y < 0 || texel.y >= side) texel = ivec2(side - 1 - texel.x, texel.y < 0 ? 0 : side - 1);
+    return vplMaps[(light * vpl.mapSide + uint(texel.y)) * vpl.mapSide + uint(texel.x)];
+}
+
+/// Does the light see the point? `direction`: unit, from the light. The four texels around the direction are looked at: what has an outline within
+/// one of them is seen by another. A triangle there that lies between settles it, and so does it if the point lies behind none.
+bool vplSees(uint light, vec3 position, vec3 direction, float distance) {
+    if (vpl.mapSide == 0u || distance < vplLights[light].power.w) return true;
+    float side = float(vpl.mapSide);
+    vec2 at = clamp((octahedralEncode(direction) * 0.5 + 0.5) * side, vec2(0.0), vec2(side - 0.5));
+    ivec2 texel = ivec2(at);
+    ivec2 beside = ivec2(lessThan(fract(at), vec2(0.5))) * -2 + 1;
+    vec3 from = vplLights[light].position.xyz;
+    float rounding = kVplRounding * (distance + length(position));
+    uint said = triangleSays(vplTriangleAt(light, texel), from, position, rounding);
+    if ((said & kVeils) != 0u) return false;
+    said |= triangleSays(vplTriangleAt(light, texel + ivec2(beside.x, 0)), from, position, rounding) |
+            triangleSays(vplTriangleAt(light, texel + ivec2(0, beside.y)), from, position, rounding) |
+            triangleSays(vplTriangleAt(light, texel + beside), from, position, rounding); // no loop: llvmpipe counts its rounds
+    said &= kHides | kDoubtful;
+    return said == 0u || (said == kDoubtful && !triangleBetween(from, position));
+}
+
+#endif
