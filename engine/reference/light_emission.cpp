@@ -67,7 +67,6 @@ EmittedRay LightEmission::sample(Sampler& sampler) const {
     const double chance = (sums_[light + 1] - sums_[light]) / sums_.back();
 
     const Lights& lights = *scene_.lights;
-    bool distant = false;
     double area = 0;
     if (light < lights.lamps().size()) {
         const LightSource& lamp = lights.lamps()[light];
@@ -77,7 +76,7 @@ EmittedRay LightEmission::sample(Sampler& sampler) const {
             const LightSample sun = lamp.sample(whole_.centre, way);
             out.ray = fromInfinity(-sun.direction, choice.y, where, area);
             if (sun.density > 0) out.power = sun.radiance * (area / sun.density);
-            distant = true;
+            out.distant = true;
         }
     } else if (light == lights.trianglesIndex()) {
         out = lights.emitFromTriangle(choice.y, where, way);
@@ -85,14 +84,14 @@ EmittedRay LightEmission::sample(Sampler& sampler) const {
         const DirectionSample sky = lights.environment().sample(way);
         out.ray = fromInfinity(-sky.direction, choice.y, where, area);
         if (sky.density > 0) out.power = sky.radiance * (area / sky.density);
-        distant = true;
+        out.distant = true;
     } else {
         const GlowSample glow = lights.glow().sample(choice.y, where);
         out.ray = {glow.position, uniformDirection(way)};
         if (glow.density > 0) out.power = glow.emission * (4 * kPi / glow.density);
     }
     out.power /= chance;
-    if (distant && out.power != dvec3(0)) {
+    if (out.distant && out.power != dvec3(0)) {
         const Ray back{out.ray.origin, -out.ray.direction};
         out.power *=
             transmittance(*scene_.media, back, kInfinity, TransmittanceMode::Exact, sampler);

@@ -21,8 +21,9 @@ struct LightSample {
 /// A ray that some light sends out, with the power that it stands for.
 struct EmittedRay {
     Ray ray;
-    dvec3 power{0};   // watts: radiance · cosine / density of the ray; 0: nothing
-    double range = 0; // metres, for rangeWindow()
+    dvec3 power{0};       // watts: radiance · cosine / density of the ray; 0: nothing
+    double range = 0;     // metres, for rangeWindow()
+    bool distant = false; // from infinity
 };
 
 class LightSource {

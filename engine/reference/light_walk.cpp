@@ -43,13 +43,13 @@ bool LightWalker::survives(double carried, double started, size_t vertices, Samp
 
 void LightWalker::trace(Sampler& sampler, std::vector<WalkVertex>& walk) {
     walk.clear();
-    const EmittedRay start = emission_.sample(sampler);
-    const double started = maximumOf(start.power);
+    start_ = emission_.sample(sampler);
+    const double started = maximumOf(start_.power);
     if (!(started > 0) || !std::isfinite(started)) return;
     PathWeights weights;
-    weights.throughput = start.power;
+    weights.throughput = start_.power;
     if (!scene_.media->grey()) weights.hero = std::min(2, int(3 * sampler.next1()));
-    Ray ray = start.ray;
+    Ray ray = start_.ray;
     for (;;) {
         ++rays_;
         const RayHit hit =
@@ -63,7 +63,7 @@ void LightWalker::trace(Sampler& sampler, std::vector<WalkVertex>& walk) {
         WalkVertex vertex;
         vertex.travel = ray.direction;
         vertex.scatterings = int(walk.size()) + 1;
-        if (walk.empty()) weights.throughput *= rangeWindow(start.range, flight.distance);
+        if (walk.empty()) weights.throughput *= rangeWindow(start_.range, flight.distance);
         if (weights.throughput == dvec3(0)) return;
         const double choice = sampler.next1();
         const dvec2 u = sampler.next2();

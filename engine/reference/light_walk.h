@@ -36,6 +36,8 @@ public:
 
     /// The vertices of one walk, in order; what stood in `walk` is dropped.
     void trace(Sampler& sampler, std::vector<WalkVertex>& walk);
+    /// Of the walk traced last.
+    [[nodiscard]] const EmittedRay& start() const { return start_; }
     [[nodiscard]] uint64_t cutOff() const { return cutOff_; }
     [[nodiscard]] uint64_t rays() const { return rays_; }
 
@@ -45,6 +47,7 @@ private:
     const TracerScene& scene_;
     const LightEmission& emission_;
     WalkSettings settings_;
+    EmittedRay start_;
     MediaSegment segment_;
     MediumPoint mediumPoint_;
     std::vector<EmittedLight> emitted_;

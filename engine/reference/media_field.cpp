@@ -307,7 +307,7 @@ double MediumSource::samplePhase(double u) const {
     return 1;
 }
 
-MediaField::MediaField(const Scene& scene, const dvec3& origin) {
+MediaField::MediaField(const Scene& scene, const dvec3& origin, const Change& change) {
     const std::vector<dmat4> world = scene.worldTransforms();
     const std::vector<bool> visible = scene.worldVisibility();
     for (size_t i = 0; i < scene.nodes.size(); ++i) {
@@ -320,7 +320,12 @@ MediaField::MediaField(const Scene& scene, const dvec3& origin) {
             notes_.push_back("medium '" + medium.name +
                              "' of particles is left out: the reference has none yet");
         if (!usable(medium, rayFromNode)) continue;
-        const MediumSource& source = media_.emplace_back(medium, rayFromNode);
+        const MediumSource& source = [&]() -> const MediumSource& {
+            if (!change) return media_.emplace_back(medium, rayFromNode);
+            Medium changed = medium;
+            change(changed, rayFromNode);
+            return media_.emplace_back(changed, rayFromNode);
+        }();
         grey_ = grey_ && source.extinction.x == source.extinction.y &&
                 source.extinction.y == source.extinction.z;
         scatters_ = scatters_ || source.scattering != dvec3(0);

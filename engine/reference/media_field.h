@@ -3,6 +3,7 @@
 //
 // A medium's density is dimensionless; its coefficients are per metre at density 1. Media overlap freely: coefficients add.
 
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -121,8 +122,9 @@ private:
 
 class MediaField {
 public:
-    /// `origin`: the world's point that becomes the origin of ray space.
-    MediaField(const Scene& scene, const dvec3& origin);
+    using Change = std::function<void(Medium&, dmat4& rayFromNode)>;
+    /// `origin`: the world's point that becomes the origin of ray space. `change`: what becomes of each medium before.
+    MediaField(const Scene& scene, const dvec3& origin, const Change& change = {});
 
     [[nodiscard]] bool empty() const { return media_.empty(); }
     [[nodiscard]] const std::vector<MediumSource>& media() const { return media_; }

@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #include <cstddef>
 
 #include "framegraph/hash.h"
+#include "reference/guessed_media.h"
 
 namespace tyndall::volumetric_gi {
 namespace {
@@ -29,6 +31,53 @@ gpu::VplTriangle pack(const reference::SceneTriangle& from) {
     return triangle;
 }
 
+/// Of surfaces, and of lights but for glowing media. Versions tell that nodes have moved, not which.
+struct Keys {
+    uint64_t surfaces = fg::kHashStart, lights = fg::kHashStart;
+};
+
+uint64_t mixMatrix(uint64_t key, const dmat4& m) {
+    for (int i = 0; i < 16; ++i) key = fg::mixHash(key, std::bit_cast<uint64_t>(m[i / 4][i % 4]));
+    return key;
+}
+
+Keys keysOf(const Scene& scene, const dvec3& origin) {
+    Keys keys;
+    const SceneVersions& now = scene.versions;
+    for (const uint64_t version : {now.structure, now.meshes, now.materials, now.textures})
+        keys.surfaces = fg::mixHash(keys.surfaces, version);
+    for (const uint64_t version : {now.lights, now.environment})
+        keys.lights = fg::mixHash(keys.lights, version);
+    for (int axis = 0; axis < 3; ++axis) {
+        const auto bits = std::bit_cast<uint64_t>(origin[axis]);
+        keys.surfaces = fg::mixHash(keys.surfaces, bits);
+        keys.lights = fg::mixHash(keys.lights, bits);
+    }
+    const std::vector<dmat4> world = scene.worldTransforms();
+    const std::vector<bool> visible = scene.worldVisibility();
+    for (size_t i = 0; i < scene.nodes.size(); ++i) {
+        const Node& node = scene.nodes[i];
+        if (!node.meshes.empty()) {
+            keys.surfaces = fg::mixHash(mixMatrix(keys.surfaces, world[i]), visible[i]);
+            for (const dmat4& instance : node.instances)
+                keys.surfaces = mixMatrix(keys.surfaces, instance);
+        }
+        if (node.light != kNone)
+            keys.lights = fg::mixHash(mixMatrix(keys.lights, world[i]), visible[i]);
+    }
+    return keys;
+}
+
+/// Outwards to eighths of a power of two: what moves a little leaves it as it is.
+Bounds roughly(const Bounds& bounds) {
+    if (bounds.empty()) return bounds;
+    const dvec3 extent = bounds.extent();
+    const double cell =
+        std::exp2(std::ceil(std::log2(std::max({extent.x, extent.y, extent.z}))) - 3);
+    if (!(cell > 0) || !std::isfinite(cell)) return bounds;
+    return {cell * glm::floor(bounds.minimum / cell), cell * glm::ceil(bounds.maximum / cell)};
+}
+
 } // namespace
 
 Result<void> TracedScene::updateSurfaces(const Scene& scene, const dvec3& origin) {
@@ -45,30 +94,45 @@ Result<void> TracedScene::updateSurfaces(const Scene& scene, const dvec3& origin
     return {};
 }
 
-Result<void> TracedScene::update(const plugin::FrameInputs& inputs) {
+void TracedScene::updateMedia(const Scene& scene, const dvec3& origin, bool guessed) {
+    scene_.lights.reset(); // keeps references to media
+    if (!guessed) {
+        scene_.media = std::make_unique<reference::MediaField>(scene, origin);
+        media_.reset();
+        return;
+    }
+    reference::GuessedMedia guess = reference::guessMedia(scene, origin);
+    // Walks that are kept name the media that they went through: these stay while nothing about them changes.
+    if (!media_ || guess.hash != guessHash_)
+        scene_.media = std::make_unique<reference::MediaField>(std::move(guess.field));
+    guessHash_ = guess.hash;
+    media_ = std::make_unique<reference::MediaField>(scene, origin);
+}
+
+Result<void> TracedScene::update(const plugin::FrameInputs& inputs, bool guessed) {
     const Scene& scene = *inputs.whole;
     const SceneVersions& now = scene.versions;
     const dvec3 origin(inputs.origin[0], inputs.origin[1], inputs.origin[2]);
-    uint64_t surfaces = fg::kHashStart;
-    for (const uint64_t version :
-         {now.structure, now.transforms, now.meshes, now.materials, now.textures})
-        surfaces = fg::mixHash(surfaces, version);
+    uint64_t changes = fg::mixHash(fg::kHashStart, guessed);
+    for (const uint64_t version : {now.structure, now.transforms, now.meshes, now.materials,
+                                   now.textures, now.lights, now.media, now.environment})
+        changes = fg::mixHash(changes, version);
     for (const double coordinate : inputs.origin)
-        surfaces = fg::mixHash(surfaces, std::bit_cast<uint64_t>(coordinate));
-    uint64_t key = surfaces;
-    for (const uint64_t version : {now.lights, now.media, now.environment})
-        key = fg::mixHash(key, version);
-    if (whole_ == &scene && key == key_) return {};
+        changes = fg::mixHash(changes, std::bit_cast<uint64_t>(coordinate));
+    if (whole_ == &scene && changes == changesKey_) return {};
 
-    emission_.reset();
-    scene_.lights.reset();
-    if (whole_ != &scene || surfaces != surfacesKey_) {
+    const Keys keys = keysOf(scene, origin);
+    if (whole_ != &scene || keys.surfaces != surfacesKey_) {
+        emission_.reset();
+        scene_.lights.reset();
         if (Result<void> built = updateSurfaces(scene, origin); !built.ok()) {
             whole_ = nullptr;
             return built;
         }
     }
-    scene_.media = std::make_unique<reference::MediaField>(scene, origin);
+    emission_.reset();
+    key_ = changes;
+    updateMedia(scene, origin, guessed);
     scene_.lights =
         std::make_unique<reference::Lights>(scene, origin, *scene_.surfaces, *scene_.media);
     Bounds content = scene.contentBounds();
@@ -76,10 +140,18 @@ Result<void> TracedScene::update(const plugin::FrameInputs& inputs) {
         content.minimum -= origin;
         content.maximum -= origin;
     }
+    content = roughly(content);
     emission_ = std::make_unique<reference::LightEmission>(scene_, content);
+    walksKey_ = key_;
+    if (guessed) {
+        walksKey_ = fg::mixHash(fg::mixHash(guessHash_, keys.surfaces), keys.lights);
+        for (const dvec3& end : {content.minimum, content.maximum})
+            for (int axis = 0; axis < 3; ++axis)
+                walksKey_ = fg::mixHash(walksKey_, std::bit_cast<uint64_t>(end[axis]));
+    }
     whole_ = &scene;
-    key_ = key;
-    surfacesKey_ = surfaces;
+    changesKey_ = changes;
+    surfacesKey_ = keys.surfaces;
     return {};
 }
 

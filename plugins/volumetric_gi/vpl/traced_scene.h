@@ -12,27 +12,38 @@ namespace tyndall::volumetric_gi {
 
 class TracedScene {
 public:
+    /// `guessed`: walks are to go through media that small changes of the media do not change.
     /// Errors: the surfaces do not fit into memory.
-    Result<void> update(const plugin::FrameInputs& inputs);
+    Result<void> update(const plugin::FrameInputs& inputs, bool guessed);
 
+    /// What walks go through.
     [[nodiscard]] const reference::TracerScene& scene() const { return scene_; }
     [[nodiscard]] const reference::LightEmission& emission() const { return *emission_; }
+    /// Are the media there guessed?
+    [[nodiscard]] bool guessed() const { return media_ != nullptr; }
+    /// The media as they are.
+    [[nodiscard]] const reference::MediaField& media() const {
+        return guessed() ? *media_ : *scene_.media;
+    }
     /// All triangles, and a tree over them, as shaders read them.
     [[nodiscard]] const std::vector<gpu::VplTriangle>& triangles() const { return triangles_; }
     [[nodiscard]] const std::vector<reference::TreeNode>& tree() const { return tree_; }
-    /// Of everything that walks follow from, and of the surfaces alone.
+    /// Of everything that walks' courses follow from, of what they carry, and of the surfaces alone.
+    [[nodiscard]] uint64_t walksKey() const { return walksKey_; }
     [[nodiscard]] uint64_t key() const { return key_; }
     [[nodiscard]] uint64_t surfacesKey() const { return surfacesKey_; }
 
 private:
     Result<void> updateSurfaces(const Scene& scene, const dvec3& origin);
+    void updateMedia(const Scene& scene, const dvec3& origin, bool guessed);
 
     reference::TracerScene scene_;
+    std::unique_ptr<reference::MediaField> media_; // where those in scene_ are guessed
     std::unique_ptr<reference::LightEmission> emission_;
     std::vector<gpu::VplTriangle> triangles_;
     std::vector<reference::TreeNode> tree_;
     const Scene* whole_ = nullptr;
-    uint64_t key_ = 0, surfacesKey_ = 0;
+    uint64_t changesKey_ = 0, key_ = 0, walksKey_ = 0, guessHash_ = 0, surfacesKey_ = 0;
 };
 
 } // namespace tyndall::volumetric_gi

@@ -199,8 +199,8 @@ VplBuffers addVplUpload(fg::FrameGraph& graph, const plugin::FrameInputs& inputs
     };
     VplBuffers buffers;
     buffers.lights = add("gi.vpl.lights", upload.set->lights, upload.lightsKey);
-    buffers.walks = add("gi.vpl.walks", upload.set->walks, upload.lightsKey);
-    buffers.maps = add("gi.vpl.maps", *upload.maps, upload.lightsKey);
+    buffers.walks = add("gi.vpl.walks", upload.set->walks, upload.mapsKey);
+    buffers.maps = add("gi.vpl.maps", *upload.maps, upload.mapsKey);
     buffers.triangles = add("gi.vpl.triangles", *upload.triangles, upload.trianglesKey);
     buffers.tree = add("gi.vpl.tree", *upload.tree, upload.trianglesKey);
     // Sizes are rounded up, so that the buffer's alone does not tell maps of one side from those of another.

@@ -28,13 +28,13 @@ Command& bindVpls(Command& command, const VplBuffers& buffers, const gpu::VplPar
         .bind("VplDepths", buffers.depths);
 }
 
-/// What goes up; must live until the frame has been executed. `lightsKey`, `trianglesKey`: of its content.
+/// What goes up; must live until the frame has been executed. `lightsKey`, `mapsKey`, `trianglesKey`: of its content.
 struct VplUpload {
     const VplSet* set = nullptr;
     const std::vector<uint32_t>* maps = nullptr;
     const std::vector<gpu::VplTriangle>* triangles = nullptr;
     const std::vector<reference::TreeNode>* tree = nullptr;
-    uint64_t lightsKey = 0, trianglesKey = 0;
+    uint64_t lightsKey = 0, mapsKey = 0, trianglesKey = 0;
 };
 
 /// How lights are gathered.

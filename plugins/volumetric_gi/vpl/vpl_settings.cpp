@@ -52,6 +52,9 @@ const SettingDesc kVplSettings[] = {
     TYNDALL_BOOL(
         VplSettings, keep, "gi.vpl.keep", "Keep walks", true,
         "Walks and maps are kept while nothing has changed; off: made anew each frame, to be timed."),
+    TYNDALL_BOOL(
+        VplSettings, incremental, "gi.vpl.incremental", "Keep walks while media change", false,
+        "Walks and maps stay while nothing but media changes a little: only what walks carry is told anew. Noisier where media are uneven."),
     TYNDALL_ENUM(
         VplSettings, show, "gi.vpl.show", "Show", kShowNames, 0,
         "The virtual lights in the picture, green on surfaces and red in media, or the map of what one of them sees."),

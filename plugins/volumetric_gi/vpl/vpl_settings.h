@@ -18,7 +18,7 @@ struct VplSettings {
     float clamp, surfaceClamp;
     float relaxed;
     float roughness;
-    bool fromSurfaces, fromMedia, keep;
+    bool fromSurfaces, fromMedia, keep, incremental;
     int32_t show; // 0: nothing, else kVplShow…
     int32_t showLight;
 };

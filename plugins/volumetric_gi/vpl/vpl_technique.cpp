@@ -20,8 +20,10 @@ constexpr double kRoundsOfLight = 4, kRoundsOfDoubt = 2;
 constexpr double kBall = 0.08;
 
 /// As in VplTechnique::statistics_.
-constexpr plugin::Statistic kStatistics[] = {
-    {"virtual_lights.gi.vpl", 0}, {"walks.gi.vpl", 1}, {"walks_cut_off.gi.vpl", 2}};
+constexpr plugin::Statistic kStatistics[] = {{"virtual_lights.gi.vpl", 0},
+                                             {"walks.gi.vpl", 1},
+                                             {"walks_cut_off.gi.vpl", 2},
+                                             {"walks_traced.gi.vpl", 3}};
 
 bool converges(const plugin::FrameInputs& inputs) {
     return (inputs.view.data.flags & gpu::kViewConverge) != 0;
@@ -30,21 +32,36 @@ bool converges(const plugin::FrameInputs& inputs) {
 } // namespace
 
 void VplTechnique::makeLights(const plugin::FrameInputs& inputs) {
-    uint64_t key = scene_.key();
     const uint32_t generation = converges(inputs) ? inputs.view.data.frameIndex : 0;
+    uint64_t order = fg::kHashStart;
     for (const uint64_t value : {uint64_t(generation), uint64_t(inputs.view.data.seed),
                                  uint64_t(settings_.walks), uint64_t(settings_.mapSide),
                                  uint64_t(settings_.fromSurfaces), uint64_t(settings_.fromMedia)})
-        key = fg::mixHash(key, value);
-    if (key == lightsKey_ && settings_.keep) return;
-    set_ = makeWalks(scene_.scene(), scene_.emission(),
-                     {uint32_t(settings_.walks), inputs.view.data.seed, generation,
-                      settings_.fromSurfaces, settings_.fromMedia});
+        order = fg::mixHash(order, value);
+    const uint64_t walksKey = fg::mixHash(order, scene_.walksKey()),
+                   lightsKey = fg::mixHash(order, scene_.key());
+    walksTraced_ = 0;
+    if (lightsKey == lightsKey_ && settings_.keep) return;
+    const WalkOrder what{uint32_t(settings_.walks), inputs.view.data.seed, generation,
+                         settings_.fromSurfaces, settings_.fromMedia};
+    const bool anew = walksKey != walksKey_ || !settings_.keep;
+    if (anew) {
+        walks_ = traceWalks(scene_.scene(), scene_.emission(), what);
+        walksTraced_ = what.walks;
+    }
+    const std::vector<gpu::VplData> before = std::move(set_.lights);
+    set_ = packWalks(
+        scene_.guessed() ? reweighed(walks_, *scene_.scene().media, scene_.media()) : walks_, what);
     const reference::SurfaceScene& surfaces = *scene_.scene().surfaces;
-    maps_.clear();
-    if (settings_.mapSide > 0 && surfaces.triangleCount() > 0)
-        maps_ = makeVisibilityMaps(surfaces, set_, uint32_t(settings_.mapSide), generation);
-    lightsKey_ = key;
+    if (anew) {
+        maps_.clear();
+        if (settings_.mapSide > 0 && surfaces.triangleCount() > 0)
+            maps_ = makeVisibilityMaps(surfaces, set_, uint32_t(settings_.mapSide), generation);
+    } else {
+        for (size_t i = 0; i < before.size(); ++i) set_.lights[i].power.w = before[i].power.w;
+    }
+    walksKey_ = walksKey;
+    lightsKey_ = lightsKey;
 }
 
 /// Between the virtual lights of so many frames, metres: (V/M)^(1/3) (transport.md, 5.1 i).
@@ -84,7 +101,7 @@ VplGather VplTechnique::gather(const plugin::FrameInputs& inputs) const {
     params.relaxed = settings_.relaxed;
     params.samples = uint32_t(settings_.samples);
     Bounds grids;
-    for (const reference::MediumSource& medium : scene_.scene().media->media())
+    for (const reference::MediumSource& medium : scene_.media().media())
         if (medium.isGrid()) grids.include(medium.bounds());
     if (!grids.empty() && inputs.media.count > 0) {
         params.depthSide = uint32_t(settings_.depthSide);
@@ -99,17 +116,17 @@ VplGather VplTechnique::gather(const plugin::FrameInputs& inputs) const {
 plugin::FrameOutputs VplTechnique::addPasses(fg::FrameGraph& graph,
                                              const plugin::FrameInputs& inputs,
                                              plugin::Host& host) {
-    if (Result<void> ready = scene_.update(inputs); !ready.ok()) {
+    if (Result<void> ready = scene_.update(inputs, settings_.incremental); !ready.ok()) {
         if (said_ != ready.message()) host.log(("vpl: " + ready.message()).c_str());
         said_ = ready.message();
         return {};
     }
     makeLights(inputs);
     gather_ = gather(inputs);
-    buffers_ = addVplUpload(
-        graph, inputs,
-        {&set_, &maps_, &scene_.triangles(), &scene_.tree(), lightsKey_, scene_.surfacesKey()},
-        gather_.params);
+    buffers_ = addVplUpload(graph, inputs,
+                            {&set_, &maps_, &scene_.triangles(), &scene_.tree(), lightsKey_,
+                             walksKey_, scene_.surfacesKey()},
+                            gather_.params);
     plugin::FrameOutputs outputs;
     if (inputs.terms & kIndirectOnSurfaces)
         outputs.surfaceRadiance = addVplSurfaces(graph, inputs, buffers_, gather_);
@@ -124,7 +141,8 @@ plugin::FrameOutputs VplTechnique::addPasses(fg::FrameGraph& graph,
 }
 
 fg::BufferHandle VplTechnique::addStatistics(fg::FrameGraph& graph) {
-    statistics_ = {float(set_.lights.size()), float(set_.walks.size() - 1), float(set_.cutOff)};
+    statistics_ = {float(set_.lights.size()), float(set_.walks.size() - 1), float(set_.cutOff),
+                   float(walksTraced_)};
     struct Data {
         fg::BufferHandle values;
         const float* data;

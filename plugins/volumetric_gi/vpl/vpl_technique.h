@@ -33,11 +33,13 @@ private:
     TracedScene scene_;
     VplSet set_;
     std::vector<uint32_t> maps_;
-    uint64_t lightsKey_ = 0;
+    Walks walks_; // through guessed media, where those are
+    uint64_t lightsKey_ = 0, walksKey_ = 0;
+    uint32_t walksTraced_ = 0; // in this frame
     std::string said_;
     VplBuffers buffers_; // of this frame
     VplGather gather_;
-    std::array<float, 3> statistics_{};
+    std::array<float, 4> statistics_{};
 };
 
 } // namespace tyndall::volumetric_gi

@@ -25,22 +25,41 @@ gpu::VplData pack(const reference::WalkVertex& vertex, double share) {
 
 } // namespace
 
-VplSet makeWalks(const reference::TracerScene& scene, const reference::LightEmission& emission,
+Walks traceWalks(const reference::TracerScene& scene, const reference::LightEmission& emission,
                  const WalkOrder& order) {
-    std::vector<std::vector<reference::WalkVertex>> walks(order.walks);
+    Walks walks;
+    walks.starts.resize(order.walks);
+    walks.vertices.resize(order.walks);
     tbb::enumerable_thread_specific<reference::LightWalker> walkers(
         [&] { return reference::LightWalker(scene, emission, {}); });
     tbb::parallel_for(tbb::blocked_range<uint32_t>(0, order.walks, 16),
                       [&](const tbb::blocked_range<uint32_t>& range) {
+                          reference::LightWalker& walker = walkers.local();
                           for (uint32_t i = range.begin(); i < range.end(); ++i) {
                               reference::Sampler sampler(order.seed, order.generation, i);
-                              walkers.local().trace(sampler, walks[i]);
+                              walker.trace(sampler, walks.vertices[i]);
+                              walks.starts[i] = walker.start();
                           }
                       });
+    for (const reference::LightWalker& walker : walkers) walks.cutOff += walker.cutOff();
+    return walks;
+}
+
+Walks reweighed(const Walks& walks, const reference::MediaField& from,
+                const reference::MediaField& to) {
+    Walks result = walks;
+    tbb::parallel_for(size_t(0), walks.vertices.size(), [&](size_t i) {
+        reference::reweigh(result.starts[i], result.vertices[i], from, to);
+    });
+    return result;
+}
+
+VplSet packWalks(const Walks& walks, const WalkOrder& order) {
     VplSet set;
     set.walks.push_back(0);
+    set.cutOff = walks.cutOff;
     const double share = 1 / double(order.walks);
-    for (const auto& walk : walks) {
+    for (const auto& walk : walks.vertices) {
         for (const reference::WalkVertex& vertex : walk) {
             if (!(vertex.medium ? order.fromMedia : order.fromSurfaces)) continue;
             set.lights.push_back(pack(vertex, share));
@@ -49,7 +68,6 @@ VplSet makeWalks(const reference::TracerScene& scene, const reference::LightEmis
         }
         set.walks.push_back(uint32_t(set.lights.size()));
     }
-    for (const reference::LightWalker& walker : walkers) set.cutOff += walker.cutOff();
     return set;
 }
 

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "reference/light_walk.h"
+#include "reference/guessed_media.h"
 #include "shared/vpl.h"
 
 namespace tyndall::volumetric_gi {
@@ -23,8 +23,19 @@ struct WalkOrder {
     bool fromSurfaces = true, fromMedia = true; // which virtual lights to keep
 };
 
-/// Powers are divided by the number of walks. The same order gives the same lights, however many threads there are.
-VplSet makeWalks(const reference::TracerScene& scene, const reference::LightEmission& emission,
+struct Walks {
+    std::vector<reference::EmittedRay> starts;
+    std::vector<std::vector<reference::WalkVertex>> vertices;
+    uint64_t cutOff = 0;
+};
+
+/// The same order gives the same walks, however many threads there are.
+Walks traceWalks(const reference::TracerScene& scene, const reference::LightEmission& emission,
                  const WalkOrder& order);
+/// What walks through one field carry in the other.
+Walks reweighed(const Walks& walks, const reference::MediaField& from,
+                const reference::MediaField& to);
+/// Powers are divided by the number of walks.
+VplSet packWalks(const Walks& walks, const WalkOrder& order);
 
 } // namespace tyndall::volumetric_gi
