@@ -36,7 +36,7 @@ Walks traceWalks(const reference::TracerScene& scene, const reference::LightEmis
                       [&](const tbb::blocked_range<uint32_t>& range) {
                           reference::LightWalker& walker = walkers.local();
                           for (uint32_t i = range.begin(); i < range.end(); ++i) {
-                              reference::Sampler sampler(order.seed, order.generation, i);
+                              reference::Sampler sampler(order.seed, 0, order.generation * order.walks + i);
                               walker.trace(sampler, walks.vertices[i]);
                               walks.starts[i] = walker.start();
                           }
