@@ -9,7 +9,7 @@
 namespace tyndall::volumetric_gi {
 
 struct VplSettings {
-    int32_t walks;
+    int32_t walks, candidates;
     int32_t classes, surfaceClasses;
     int32_t mapSide, depthSide;
     int32_t samples;

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "framegraph/hash.h"
+#include "volumetric_gi/vpl/vpl_choice.h"
 #include "volumetric_gi/vpl/vpl_maps.h"
 #include "volumetric_gi/vpl/vpl_show.h"
 
@@ -25,6 +26,16 @@ constexpr plugin::Statistic kStatistics[] = {{"virtual_lights.gi.vpl", 0},
                                              {"walks_cut_off.gi.vpl", 2},
                                              {"walks_traced.gi.vpl", 3}};
 
+/// With which it is found out what lights matter.
+constexpr uint32_t kSeenPoints = 64;
+
+/// (V/M)^(1/3) (transport.md, 5.1 i), metres.
+double meanDistanceIn(const Bounds& around, double lights) {
+    if (around.empty()) return 0;
+    const dvec3 extent = glm::max(around.extent(), 1e-3 * glm::length(around.extent()));
+    return std::cbrt(extent.x * extent.y * extent.z / lights);
+}
+
 bool converges(const plugin::FrameInputs& inputs) {
     return (inputs.view.data.flags & gpu::kViewConverge) != 0;
 }
@@ -38,16 +49,25 @@ void VplTechnique::makeLights(const plugin::FrameInputs& inputs) {
                                  uint64_t(settings_.walks), uint64_t(settings_.mapSide),
                                  uint64_t(settings_.fromSurfaces), uint64_t(settings_.fromMedia)})
         order = fg::mixHash(order, value);
+    // Which lights matter changes with the media: where walks are to be kept, all are.
+    const uint32_t candidates = settings_.incremental ? 1 : uint32_t(settings_.candidates);
+    order = fg::mixHash(order, candidates);
+    if (candidates > 1) order = fg::mixHash(order, viewKey(inputs.view.data));
     const uint64_t walksKey = fg::mixHash(order, scene_.walksKey()),
                    lightsKey = fg::mixHash(order, scene_.key());
     walksTraced_ = 0;
     if (lightsKey == lightsKey_ && settings_.keep) return;
-    const WalkOrder what{uint32_t(settings_.walks), inputs.view.data.seed, generation,
-                         settings_.fromSurfaces, settings_.fromMedia};
+    const WalkOrder what{uint32_t(settings_.walks) * candidates,
+                         candidates,
+                         inputs.view.data.seed,
+                         generation,
+                         settings_.fromSurfaces,
+                         settings_.fromMedia};
     const bool anew = walksKey != walksKey_ || !settings_.keep;
     if (anew) {
         walks_ = traceWalks(scene_.scene(), scene_.emission(), what);
         walksTraced_ = what.walks;
+        if (candidates > 1) choose(inputs, what, candidates);
     }
     const std::vector<gpu::VplData> before = std::move(set_.lights);
     set_ = packWalks(
@@ -64,14 +84,28 @@ void VplTechnique::makeLights(const plugin::FrameInputs& inputs) {
     lightsKey_ = lightsKey;
 }
 
-/// Between the virtual lights of so many frames, metres: (V/M)^(1/3) (transport.md, 5.1 i).
+/// Of the lights of all candidates those that matter to the picture.
+void VplTechnique::choose(const plugin::FrameInputs& inputs, const WalkOrder& order,
+                          uint32_t candidates) {
+    const reference::SurfaceScene& surfaces = *scene_.scene().surfaces;
+    const uint64_t seed = fg::mixHash(order.seed, order.generation);
+    Bounds around;
+    double lights = 0;
+    for (const auto& walk : walks_.vertices)
+        for (const reference::WalkVertex& light : walk) {
+            around.include(light.position);
+            ++lights;
+        }
+    const double wanted = lights / candidates;
+    chooseLights(walks_, seenPoints(inputs.view.data, surfaces, scene_.media(), kSeenPoints, seed),
+                 surfaces, scene_.media(), wanted, meanDistanceIn(around, wanted), seed);
+}
+
+/// Between the virtual lights of so many frames, metres.
 double VplTechnique::meanDistance(uint32_t frames) const {
     Bounds around;
     for (const dvec3& position : set_.positions) around.include(position);
-    if (around.empty()) return 0;
-    const dvec3 extent = glm::max(around.extent(), 1e-3 * glm::length(around.extent()));
-    const double volume = extent.x * extent.y * extent.z;
-    return std::cbrt(volume / double(set_.positions.size()) / double(frames));
+    return meanDistanceIn(around, double(set_.positions.size()) * double(frames));
 }
 
 VplGather VplTechnique::gather(const plugin::FrameInputs& inputs) const {

@@ -26,6 +26,7 @@ public:
 private:
     fg::BufferHandle addStatistics(fg::FrameGraph& graph);
     void makeLights(const plugin::FrameInputs& inputs);
+    void choose(const plugin::FrameInputs& inputs, const WalkOrder& order, uint32_t candidates);
     [[nodiscard]] VplGather gather(const plugin::FrameInputs& inputs) const;
     [[nodiscard]] double meanDistance(uint32_t frames) const;
 

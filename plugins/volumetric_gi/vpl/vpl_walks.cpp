@@ -36,7 +36,8 @@ Walks traceWalks(const reference::TracerScene& scene, const reference::LightEmis
                       [&](const tbb::blocked_range<uint32_t>& range) {
                           reference::LightWalker& walker = walkers.local();
                           for (uint32_t i = range.begin(); i < range.end(); ++i) {
-                              reference::Sampler sampler(order.seed, 0, order.generation * order.walks + i);
+                              reference::Sampler sampler(order.seed, 0,
+                                                         order.generation * order.walks + i);
                               walker.trace(sampler, walks.vertices[i]);
                               walks.starts[i] = walker.start();
                           }
@@ -59,14 +60,14 @@ VplSet packWalks(const Walks& walks, const WalkOrder& order) {
     set.walks.push_back(0);
     set.cutOff = walks.cutOff;
     const double share = 1 / double(order.walks);
-    for (const auto& walk : walks.vertices) {
-        for (const reference::WalkVertex& vertex : walk) {
+    for (size_t i = 0; i < walks.vertices.size(); ++i) {
+        for (const reference::WalkVertex& vertex : walks.vertices[i]) {
             if (!(vertex.medium ? order.fromMedia : order.fromSurfaces)) continue;
             set.lights.push_back(pack(vertex, share));
             set.positions.push_back(vertex.position);
             set.margins.push_back(vertex.medium ? 0 : vertex.point.margin);
         }
-        set.walks.push_back(uint32_t(set.lights.size()));
+        if ((i + 1) % order.together == 0) set.walks.push_back(uint32_t(set.lights.size()));
     }
     return set;
 }

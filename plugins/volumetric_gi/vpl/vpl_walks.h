@@ -18,6 +18,7 @@ struct VplSet {
 
 struct WalkOrder {
     uint32_t walks = 256;
+    uint32_t together = 1; // so many are gathered as one; divides `walks`
     uint64_t seed = 0;
     uint32_t generation = 0; // walks of one generation are the same whenever they are made
     bool fromSurfaces = true, fromMedia = true; // which virtual lights to keep

@@ -29,22 +29,30 @@ uint triangleSays(uint id, vec3 from, vec3 to, float rounding) {
     return crossed ? kHides : kDoubtful;
 }
 
+/// One node of the tree. True where a triangle is found that lies between; else `node` becomes the next.
+bool triangleAtNode(inout uint node, vec3 from, vec3 to, vec3 inverse, float rounding) {
+    if (node >= vpl.treeSize) return false;
+    VplTreeNode here = vplTree[node];
+    vec3 low = (here.minimum - from) * inverse;
+    vec3 high = (here.maximum - from) * inverse;
+    float enter = max(maximumOf(min(low, high)), 0.0);
+    float leave = min(minimumOf(max(low, high)), 1.0);
+    bool inside = enter <= leave * (1.0 + 1e-5); // boxes may be flat
+    node = inside ? node + 1u : here.next;
+    return inside && triangleSays(here.triangle, from, to, rounding) == kHides;
+}
+
 /// Does a triangle lie between two points? Nothing within rounding of either counts: both may lie on surfaces.
 bool triangleBetween(vec3 from, vec3 to) {
     vec3 way = to - from;
     float rounding = kVplRounding * (length(way) + length(to));
     vec3 inverse = 1.0 / mix(way, vec3(1e-20), equal(way, vec3(0.0)));
     uint node = 0u;
-    while (node < vpl.treeSize) {
-        VplTreeNode here = vplTree[node];
-        vec3 low = (here.minimum - from) * inverse;
-        vec3 high = (here.maximum - from) * inverse;
-        float enter = max(maximumOf(min(low, high)), 0.0);
-        float leave = min(minimumOf(max(low, high)), 1.0);
-        bool inside = enter <= leave * (1.0 + 1e-5); // boxes may be flat
-        if (inside && triangleSays(here.triangle, from, to, rounding) == kHides) return true;
-        node = inside ? node + 1u : here.next;
-    }
+    // Four nodes a round: llvmpipe ends all loops of an invocation after 65,535 rounds.
+    while (node < vpl.treeSize)
+        if (triangleAtNode(node, from, to, inverse, rounding) || triangleAtNode(node, from, to, inverse, rounding) ||
+            triangleAtNode(node, from, to, inverse, rounding) || triangleAtNode(node, from, to, inverse, rounding))
+            return true;
     return false;
 }
 
