@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <chrono>
 #include <cmath>
 
 #include "framegraph/hash.h"
@@ -20,11 +21,29 @@ constexpr double kRoundsOfLight = 4, kRoundsOfDoubt = 2;
 /// Of a light that is shown, part of the mean distance between lights.
 constexpr double kBall = 0.08;
 
-/// As in VplTechnique::statistics_.
-constexpr plugin::Statistic kStatistics[] = {{"virtual_lights.gi.vpl", 0},
-                                             {"walks.gi.vpl", 1},
-                                             {"walks_cut_off.gi.vpl", 2},
-                                             {"walks_traced.gi.vpl", 3}};
+/// As addStatistics() fills them in; milliseconds are of this frame, on the processor.
+constexpr plugin::Statistic kStatistics[] = {
+    {"virtual_lights.gi.vpl", 0}, {"walks.gi.vpl", 1},    {"walks_cut_off.gi.vpl", 2},
+    {"walks_traced.gi.vpl", 3},   {"walks_ms.gi.vpl", 4}, {"choice_ms.gi.vpl", 5},
+    {"maps_ms.gi.vpl", 6},
+};
+
+/// Adds the time that it lives to a number of milliseconds.
+class Stopwatch {
+public:
+    explicit Stopwatch(float& milliseconds) : milliseconds_(milliseconds) {}
+    ~Stopwatch() {
+        const std::chrono::duration<float, std::milli> passed =
+            std::chrono::steady_clock::now() - start_;
+        milliseconds_ += passed.count();
+    }
+    Stopwatch(const Stopwatch&) = delete;
+    Stopwatch& operator=(const Stopwatch&) = delete;
+
+private:
+    float& milliseconds_;
+    std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
 
 /// With which it is found out what lights matter.
 constexpr uint32_t kSeenPoints = 64;
@@ -55,6 +74,7 @@ void VplTechnique::makeLights(const plugin::FrameInputs& inputs) {
     if (candidates > 1) order = fg::mixHash(order, viewKey(inputs.view.data));
     const uint64_t walksKey = fg::mixHash(order, scene_.walksKey()),
                    lightsKey = fg::mixHash(order, scene_.key());
+    times_ = {};
     walksTraced_ = 0;
     if (lightsKey == lightsKey_ && settings_.keep) return;
     const WalkOrder what{uint32_t(settings_.walks) * candidates,
@@ -65,15 +85,20 @@ void VplTechnique::makeLights(const plugin::FrameInputs& inputs) {
                          settings_.fromMedia};
     const bool anew = walksKey != walksKey_ || !settings_.keep;
     if (anew) {
+        const Stopwatch watch(times_.walks);
         walks_ = traceWalks(scene_.scene(), scene_.emission(), what);
         walksTraced_ = what.walks;
-        if (candidates > 1) choose(inputs, what, candidates);
+    }
+    if (anew && candidates > 1) {
+        const Stopwatch watch(times_.choice);
+        choose(inputs, what, candidates);
     }
     const std::vector<gpu::VplData> before = std::move(set_.lights);
     set_ = packWalks(
         scene_.guessed() ? reweighed(walks_, *scene_.scene().media, scene_.media()) : walks_, what);
     const reference::SurfaceScene& surfaces = *scene_.scene().surfaces;
     if (anew) {
+        const Stopwatch watch(times_.maps);
         maps_.clear();
         if (settings_.mapSide > 0 && surfaces.triangleCount() > 0)
             maps_ = makeVisibilityMaps(surfaces, set_, uint32_t(settings_.mapSide), generation);
@@ -175,8 +200,13 @@ plugin::FrameOutputs VplTechnique::addPasses(fg::FrameGraph& graph,
 }
 
 fg::BufferHandle VplTechnique::addStatistics(fg::FrameGraph& graph) {
-    statistics_ = {float(set_.lights.size()), float(set_.walks.size() - 1), float(set_.cutOff),
-                   float(walksTraced_)};
+    statistics_ = {float(set_.lights.size()),
+                   float(set_.walks.size() - 1),
+                   float(set_.cutOff),
+                   float(walksTraced_),
+                   times_.walks,
+                   times_.choice,
+                   times_.maps};
     struct Data {
         fg::BufferHandle values;
         const float* data;

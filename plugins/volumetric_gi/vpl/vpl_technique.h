@@ -37,10 +37,13 @@ private:
     Walks walks_; // through guessed media, where those are
     uint64_t lightsKey_ = 0, walksKey_ = 0;
     uint32_t walksTraced_ = 0; // in this frame
+    struct {
+        float walks = 0, choice = 0, maps = 0;
+    } times_; // of this frame, milliseconds
     std::string said_;
     VplBuffers buffers_; // of this frame
     VplGather gather_;
-    std::array<float, 4> statistics_{};
+    std::array<float, 7> statistics_{};
 };
 
 } // namespace tyndall::volumetric_gi
