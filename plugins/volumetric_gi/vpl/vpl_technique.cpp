@@ -11,8 +11,15 @@
 namespace tyndall::volumetric_gi {
 namespace {
 
-/// Rounds of loops that one invocation of a shader may run: llvmpipe ends them all at 65,535, and each light gathered takes some.
-constexpr double kMostRounds = 16000;
+/// Rounds of loops that one invocation of a shader may run: llvmpipe ends them all at 65,535, and those beside it gather some more lights than their mean.
+constexpr double kMostRounds = 50000;
+
+/// That each light gathered takes: its own, one for each medium's optical depth and each phase function, and a grid's four texels.
+double roundsOfLight(const MediaResources& media, bool grids) {
+    return 1 + double(media.count) + (media.phaseGroups > 1 ? double(media.phaseGroups) : 0) +
+           (grids ? 4 : 0);
+}
+
 /// Of a light that is shown, part of the mean distance between lights.
 constexpr double kBall = 0.08;
 
@@ -61,8 +68,13 @@ VplGather VplTechnique::gather(const plugin::FrameInputs& inputs) const {
     gpu::VplParams& params = gather.params;
     params.lightCount = uint32_t(set_.lights.size());
     params.walkCount = uint32_t(set_.walks.size()) - 1;
+    Bounds grids;
+    for (const reference::MediumSource& medium : scene_.scene().media->media())
+        if (medium.isGrid()) grids.include(medium.bounds());
+    const double rounds = roundsOfLight(inputs.media, !grids.empty()) * double(params.lightCount) +
+                          double(params.walkCount);
     const auto classes = [&](int32_t wanted, double points) {
-        const double least = double(params.lightCount) * points / kMostRounds;
+        const double least = rounds * points / kMostRounds;
         return uint32_t(std::clamp(std::max(double(wanted), std::ceil(least)), 1.0,
                                    double(std::max(params.walkCount, 1u))));
     };
@@ -79,9 +91,6 @@ VplGather VplTechnique::gather(const plugin::FrameInputs& inputs) const {
     params.lightsOfScene = inputs.lights.lightCount;
     params.relaxed = settings_.relaxed;
     params.samples = uint32_t(settings_.samples);
-    Bounds grids;
-    for (const reference::MediumSource& medium : scene_.scene().media->media())
-        if (medium.isGrid()) grids.include(medium.bounds());
     if (!grids.empty() && inputs.media.count > 0) {
         params.depthSide = uint32_t(settings_.depthSide);
         params.gridsMinimum = vec4(vec3(grids.minimum), 0);
