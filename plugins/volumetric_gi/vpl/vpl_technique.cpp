@@ -11,8 +11,8 @@
 namespace tyndall::volumetric_gi {
 namespace {
 
-/// Rounds of loops that one invocation of a shader may run: llvmpipe ends them all at 65,535, and those beside it gather some more lights than their mean.
-constexpr double kMostRounds = 50000;
+/// Rounds of loops that one invocation of a shader may run: llvmpipe ends them all at 65,535, and marches take some, too.
+constexpr double kMostRounds = 40000;
 
 /// That each light gathered takes: its own, one for each medium's optical depth and each phase function, and a grid's four texels.
 double roundsOfLight(const MediaResources& media, bool grids) {
@@ -71,8 +71,7 @@ VplGather VplTechnique::gather(const plugin::FrameInputs& inputs) const {
     Bounds grids;
     for (const reference::MediumSource& medium : scene_.scene().media->media())
         if (medium.isGrid()) grids.include(medium.bounds());
-    const double rounds = roundsOfLight(inputs.media, !grids.empty()) * double(params.lightCount) +
-                          double(params.walkCount);
+    const double rounds = roundsOfLight(inputs.media, !grids.empty()) * double(params.lightCount);
     const auto classes = [&](int32_t wanted, double points) {
         const double least = rounds * points / kMostRounds;
         return uint32_t(std::clamp(std::max(double(wanted), std::ceil(least)), 1.0,
@@ -127,7 +126,7 @@ plugin::FrameOutputs VplTechnique::addPasses(fg::FrameGraph& graph,
 }
 
 fg::BufferHandle VplTechnique::addStatistics(fg::FrameGraph& graph) {
-    statistics_ = {float(set_.lights.size()), float(set_.walks.size() - 1), float(set_.cutOff)};
+    statistics_ = {float(set_.lights.size()), float(settings_.walks), float(set_.cutOff)};
     struct Data {
         fg::BufferHandle values;
         const float* data;

@@ -47,7 +47,7 @@ VplSet makeWalks(const reference::TracerScene& scene, const reference::LightEmis
             set.positions.push_back(vertex.position);
             set.margins.push_back(vertex.medium ? 0 : vertex.point.margin);
         }
-        set.walks.push_back(uint32_t(set.lights.size()));
+        if (set.lights.size() > set.walks.back()) set.walks.push_back(uint32_t(set.lights.size()));
     }
     for (const reference::LightWalker& walker : walkers) set.cutOff += walker.cutOff();
     return set;

@@ -29,14 +29,14 @@ vec3 walksInMedium(uint number, vec3 position, vec3 direction, Segment s, float 
     vec3 sum = vec3(0.0);
     uint walk = number % vpl.classes;
     uint light = 0u;
-    uint end = 0u; // of the walk's lights
+    uint end = 0u; // of the walk's lights, of which there is at least one
     while (light < end || walk < vpl.walkCount) {
         if (light == end) {
             light = vplWalks[walk];
             end = vplWalks[walk + 1u];
             walk += vpl.classes;
         }
-        if (light < end) sum += lightInMedium(light++, position, direction, s, clampSquared, guide);
+        sum += lightInMedium(light++, position, direction, s, clampSquared, guide);
     }
     return sum * float(vpl.classes);
 }
