@@ -25,7 +25,8 @@ struct SlabRow {
     std::array<double, kMu.size()> reflected, transmitted; // at kMu
     double absorbed;                                       // of the beam; -1: not looked at
     int walks;
-    double noise; // of a flux, relative: the spread among seeds
+    uint32_t seeds;
+    double noise; // of a flux, relative, from its spread among seeds
 };
 
 /// Peaks of phase functions face each other where light is scattered forward: few lights count, and the spread is wide. There the sum over five
@@ -39,6 +40,7 @@ const SlabRow kRows[] = {
      {0.2934023444, 0.336361745, 0.3209133076, 0.2902992861, 0.2601842286, 0.2465293847},
      0,
      2048,
+     1,
      0.012},
     {"slab-radiance, albedo 0.9, tau 1",
      0.9,
@@ -48,6 +50,7 @@ const SlabRow kRows[] = {
      {0.2240329948, 0.257581678, 0.2466789745, 0.2236334179, 0.2007042618, 0.1902646667},
      1 - 0.2674103351 - 0.5916250896,
      2048,
+     1,
      0.012},
     {"slab-radiance, albedo 1, tau 4",
      1,
@@ -56,7 +59,8 @@ const SlabRow kRows[] = {
      {0.6573723838, 0.6986224865, 0.7059764431, 0.6972303754, 0.679459045, 0.6685496459},
      {0.16476445, 0.2160467294, 0.2623004037, 0.3023385143, 0.3335226761, 0.3455754541},
      0,
-     1024,
+     4096,
+     1,
      0.015},
     {"MCML-vdH35, albedo 0.9, g 0.75, tau 2",
      0.9,
@@ -66,7 +70,8 @@ const SlabRow kRows[] = {
      {0.16486, 0.22473, 0.27785, 0.36889, 0.72155, 2.40270},
      -1,
      2048,
-     0.05},
+     4,
+     0.025},
 };
 
 /// In closed form: what a point scatters once, times transmittance to it and from it.
@@ -114,16 +119,18 @@ Leaving leavingLight(const SlabRow& row, double mu, bool transmitted) {
         width, row.tau, row.albedo, 1 - row.albedo, row.anisotropy, kOuter, kInner,
         kLampHeight + 0.5 * row.tau, 0.5 * width * options.height / options.width,
         (transmitted ? -1 : 1) * mu * distance, sine * distance, std::sin(turn), std::cos(turn)));
-    const Rendered picture = sharedRenderer().render(scene, options);
     // Of the spot: all inside, and a third of the penumbra, which fades quadratically.
     const double inner = std::cos(kInner), outer = std::cos(kOuter),
                  power = 2 * kPi * ((1 - inner) + (inner - outer) / 3);
     // A square metre across the view is 1/µ of the slab.
     const double scale = width * width * options.height / options.width / mu / (power / kPi);
     Leaving light;
-    for (const auto& [name, image] : picture.terms)
-        (name == "LVE" ? light.first : light.more) += scale * meanOf(image);
-    light.lights = picture.statistics.at("virtual_lights.gi.vpl");
+    for (options.seed = 0; options.seed < row.seeds; ++options.seed) {
+        const Rendered picture = sharedRenderer().render(scene, options);
+        for (const auto& [name, image] : picture.terms)
+            (name == "LVE" ? light.first : light.more) += scale * meanOf(image) / row.seeds;
+        light.lights = picture.statistics.at("virtual_lights.gi.vpl");
+    }
     return light;
 }
 
