@@ -13,10 +13,16 @@
 namespace tyndall::volumetric_gi {
 namespace {
 
-/// Rounds of loops that one invocation of a shader may run: llvmpipe ends them all at 65,535.
-constexpr double kMostRounds = 60000;
-/// Of each light that is gathered; and of each walk through the tree over its depth, where a map leaves a doubt.
-constexpr double kRoundsOfLight = 4, kRoundsOfDoubt = 2;
+/// Rounds of loops that one invocation of a shader may run: llvmpipe ends them all at 65,535, and marches take some, too.
+constexpr double kMostRounds = 40000;
+/// Of walks through the tree of triangles, over its depth; maps leave few doubts, but invocations side by side wait for each other's.
+constexpr double kRoundsOfDoubt = 1;
+
+/// That each light gathered takes: its own, one for each medium's optical depth and each phase function, a grid's four texels, and the tree's.
+double roundsOfLight(const MediaResources& media, bool grids, size_t treeSize) {
+    return 1 + double(media.count) + (media.phaseGroups > 1 ? double(media.phaseGroups) : 0) +
+           (grids ? 4 : 0) + kRoundsOfDoubt * std::log2(double(treeSize) + 1);
+}
 
 /// Of a light that is shown, part of the mean distance between lights.
 constexpr double kBall = 0.08;
@@ -138,10 +144,13 @@ VplGather VplTechnique::gather(const plugin::FrameInputs& inputs) const {
     gpu::VplParams& params = gather.params;
     params.lightCount = uint32_t(set_.lights.size());
     params.walkCount = uint32_t(set_.walks.size()) - 1;
-    const double rounds =
-        kRoundsOfLight + kRoundsOfDoubt * std::log2(double(scene_.tree().size()) + 1);
+    Bounds grids;
+    for (const reference::MediumSource& medium : scene_.media().media())
+        if (medium.isGrid()) grids.include(medium.bounds());
+    const double rounds = roundsOfLight(inputs.media, !grids.empty(), scene_.tree().size()) *
+                          double(params.lightCount);
     const auto classes = [&](int32_t wanted, double points) {
-        const double least = double(params.lightCount) * points * rounds / kMostRounds;
+        const double least = rounds * points / kMostRounds;
         return uint32_t(std::clamp(std::max(double(wanted), std::ceil(least)), 1.0,
                                    double(std::max(params.walkCount, 1u))));
     };
@@ -159,9 +168,6 @@ VplGather VplTechnique::gather(const plugin::FrameInputs& inputs) const {
     params.lightsOfScene = inputs.lights.lightCount;
     params.relaxed = settings_.relaxed;
     params.samples = uint32_t(settings_.samples);
-    Bounds grids;
-    for (const reference::MediumSource& medium : scene_.media().media())
-        if (medium.isGrid()) grids.include(medium.bounds());
     if (!grids.empty() && inputs.media.count > 0) {
         params.depthSide = uint32_t(settings_.depthSide);
         params.gridsMinimum = vec4(vec3(grids.minimum), 0);
@@ -201,7 +207,7 @@ plugin::FrameOutputs VplTechnique::addPasses(fg::FrameGraph& graph,
 
 fg::BufferHandle VplTechnique::addStatistics(fg::FrameGraph& graph) {
     statistics_ = {float(set_.lights.size()),
-                   float(set_.walks.size() - 1),
+                   float(settings_.walks),
                    float(set_.cutOff),
                    float(walksTraced_),
                    times_.walks,

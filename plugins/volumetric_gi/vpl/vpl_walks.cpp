@@ -67,7 +67,8 @@ VplSet packWalks(const Walks& walks, const WalkOrder& order) {
             set.positions.push_back(vertex.position);
             set.margins.push_back(vertex.medium ? 0 : vertex.point.margin);
         }
-        if ((i + 1) % order.together == 0) set.walks.push_back(uint32_t(set.lights.size()));
+        if ((i + 1) % order.together == 0 && set.lights.size() > set.walks.back())
+            set.walks.push_back(uint32_t(set.lights.size()));
     }
     return set;
 }

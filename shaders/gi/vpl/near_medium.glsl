@@ -24,10 +24,20 @@ vec3 lightInMedium(uint light, vec3 position, vec3 direction, Segment s, float c
     return scatteredLight(s, dot(towards, direction), depth) * intensity * perArea;
 }
 
+/// One loop over all lights of the class's walks: invocations side by side gather other classes, and would wait for the longest of their walks each time.
 vec3 walksInMedium(uint number, vec3 position, vec3 direction, Segment s, float clampSquared) {
     vec3 sum = vec3(0.0);
-    for (uint walk = number % vpl.classes; walk < vpl.walkCount; walk += vpl.classes)
-        for (uint light = vplWalks[walk]; light < vplWalks[walk + 1u]; ++light) sum += lightInMedium(light, position, direction, s, clampSquared);
+    uint walk = number % vpl.classes;
+    uint light = 0u;
+    uint end = 0u; // of the walk's lights, of which there is at least one
+    while (light < end || walk < vpl.walkCount) {
+        if (light == end) {
+            light = vplWalks[walk];
+            end = vplWalks[walk + 1u];
+            walk += vpl.classes;
+        }
+        sum += lightInMedium(light++, position, direction, s, clampSquared);
+    }
     return sum * float(vpl.classes);
 }
 

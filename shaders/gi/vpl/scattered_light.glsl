@@ -84,30 +84,40 @@ vec3 lightScatteredAlong(Ray ray, float distance, uvec2 pixel) {
     uint other = uint(pixelRandom(pixel, 16u).x * float(vpl.classes));
     float passed = pixelNoise(pixel, 28u); // in units of a sample: one is taken wherever this reaches a whole number
     float perSample = float(vpl.samples) / total;
+    // Sample by sample, so that invocations side by side gather together however their segments lie.
     before = vec3(0.0);
     t = t0;
-    for (int i = 0; i < kMostSegments && t < end && minimumOf(before) < opaque; ++i) {
-        Segment s = marchSegment(ray, t, end);
-        t = s.start + s.size;
-        float expected = importanceOf(s, before) * perSample;
-        float whole = floor(passed);
-        passed += expected;
-        for (float k = whole + 1.0; k <= passed; k += 1.0) {
-            ++number;
-            GatherPoint point = gatherBySegment(s, noise);
-            vec3 position = ray.origin + ray.direction * (s.start + s.size * point.fraction);
-            float clampSquared = localClampSquared(s);
-            vec3 light = walksInMedium(number, position, ray.direction, s, clampSquared);
-#if COMPENSATION == 1
-            light = evenCompensation(light, clampSquared, s, Ray(position, ray.direction), u.xyz, number);
-#elif COMPENSATION == 2
-            light += compensation(clampSquared, number + other, position, ray.direction, s, u.xyz, u.w);
-#endif
-            sum += exp(-before) * point.weight * light / expected;
-            noise = fract(noise + 0.61803399);
-            u = fract(u + vec4(0.85667488, 0.73389185, 0.62870672, 0.53859725)); // powers of the root of x⁵ = x + 1: well spread in four dimensions
+    float next = floor(passed) + 1.0;
+    float expected = 0.0;
+    Segment s;
+    s.depth = vec3(0.0);
+    for (int i = 0;;) {
+        bool more = true;
+        while (next > passed && more) {
+            before = min(before + s.depth, vec3(kOpaque));
+            more = i++ < kMostSegments && t < end && minimumOf(before) < opaque;
+            if (more) {
+                s = marchSegment(ray, t, end);
+                t = s.start + s.size;
+                expected = importanceOf(s, before) * perSample;
+                passed += expected;
+            }
         }
-        before = min(before + s.depth, vec3(kOpaque));
+        if (!more) break;
+        next += 1.0;
+        ++number;
+        GatherPoint point = gatherBySegment(s, noise);
+        vec3 position = ray.origin + ray.direction * (s.start + s.size * point.fraction);
+        float clampSquared = localClampSquared(s);
+        vec3 light = walksInMedium(number, position, ray.direction, s, clampSquared);
+#if COMPENSATION == 1
+        light = evenCompensation(light, clampSquared, s, Ray(position, ray.direction), u.xyz, number);
+#elif COMPENSATION == 2
+        light += compensation(clampSquared, number + other, position, ray.direction, s, u.xyz, u.w);
+#endif
+        sum += exp(-before) * point.weight * light / expected;
+        noise = fract(noise + 0.61803399);
+        u = fract(u + vec4(0.85667488, 0.73389185, 0.62870672, 0.53859725)); // powers of the root of x⁵ = x + 1: well spread in four dimensions
     }
     return sum;
 }

@@ -1,0 +1,140 @@
+// Where virtual point lights could blow up (validation.md, S10 to S14). The tests' renderer fails on values that are not finite, or negative.
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include "core/image_metrics.h"
+#include "gi_scenes.h"
+#include "support/render.h"
+
+namespace tyndall::test {
+namespace {
+
+Image pictureOf(const std::string& json, std::vector<std::string> settings, int frames = 1,
+                int scale = 1) {
+    RenderOptions options;
+    options.width = 33 * scale; // odd: the middle pixel's ray is the camera's axis
+    options.height = 17 * scale;
+    options.gi = "vpl";
+    options.terms = kIndirect;
+    options.frames = frames;
+    options.settings = std::move(settings);
+    options.settings.emplace_back("gi.vpl.march=full");
+    return sharedRenderer().render(sceneFromJson(json), options).beauty;
+}
+
+double largestOverMean(const Image& image) {
+    return double(*std::max_element(image.pixels.begin(), image.pixels.end())) / meanOf(image);
+}
+
+/// A box of fog around an eye that looks along a narrow beam from right before it.
+std::string alongABeam(double anisotropy) {
+    return fmt::format(
+        R"({{"tyndall": 1, "nodes": [
+        {{"name": "fog", "medium": {{"type": "homogeneous", "shape": "box", "size": [4, 4, 4], "scattering": [0.8, 0.8, 0.8],
+            "absorption": [0.1, 0.1, 0.1], "anisotropy": {}}}}},
+        {{"name": "beam", "light": {{"type": "spot", "intensity": 1e6, "outerConeAngle": 1e-3}}, "translation": [0, 0, 1]}},
+        {{"name": "eye", "camera": {{"type": "perspective", "yfov": 0.8}}, "translation": [0, 0, 1.5]}}], "camera": "eye"}})",
+        anisotropy);
+}
+
+TEST(VplHazards, ARayThroughAllLights) {
+    // The first light of each walk lies on the ray of the middle pixel. None counts as nearer than the bound lets it, so that pixels beside it are as bright.
+    for (const char* compensation : {"clamped", "traced"})
+        for (const char* clamp : {"0", "1", "100"}) {
+            const Image picture =
+                pictureOf(alongABeam(0), {"gi.vpl.walks=64", fmt::format("gi.vpl.clamp={}", clamp),
+                                          fmt::format("gi.vpl.compensation={}", compensation)});
+            EXPECT_GT(meanOf(picture), 0) << compensation << ' ' << clamp;
+            if (std::string(clamp) != "0") {
+                EXPECT_LT(largestOverMean(picture), 5) << compensation << ' ' << clamp;
+            }
+        }
+}
+
+TEST(VplHazards, LightsInOnePlaceAreOneLight) {
+    // A beam meets a white spot of the floor: each walk leaves its light there. What a dark screen gets of them is the closed form of one light.
+    constexpr double kOuter = 1e-3, kWalks = 8192;
+    const Scene scene = sceneFromJson(
+        R"({"tyndall": 1, "nodes": [
+        {"name": "floor", "primitive": {"shape": "plane", "size": [0.2, 0.2]}, "material": {"baseColor": [0.5, 0.5, 0.5], "specular": 0}},
+        {"name": "screen", "primitive": {"shape": "plane", "size": [0.4, 0.4]}, "material": {"baseColor": [0.01, 0.01, 0.01], "specular": 0},
+            "translation": [0.8, 0.6, 0], "rotation": [0, 0, 0.894427191, 0.447213595]},
+        {"name": "lamp", "light": {"type": "spot", "intensity": 1e9, "outerConeAngle": 1e-3}, "translation": [0, 0.9, 0],
+            "rotation": [-0.7071067811865476, 0, 0, 0.7071067811865476]},
+        {"name": "eye", "camera": {"type": "orthographic", "ymag": 0.01, "znear": 0.01}, "translation": [0.4, 0.3, 0],
+            "rotation": [0.22360680, -0.67082039, 0.22360680, 0.67082039]}], "camera": "eye"})");
+    RenderOptions options;
+    options.width = options.height = 5;
+    options.gi = "vpl";
+    options.terms = kIndirectOnSurfaces;
+    options.settings = {fmt::format("gi.vpl.walks={}", kWalks), "gi.vpl.mapSide=4"};
+    // KHR_lights_punctual: the square of the cosine's way to the cone's edge, over 0.001 at least.
+    const double w = 1 - std::cos(kOuter), power = 1e9 * 2 * kPi * w * w * w / 3e-6;
+    const double expected = power * 0.5 / kPi * 0.6 * 0.01 / kPi; // 1 m away, at a cosine of 0.6
+    const double found = meanOf(sharedRenderer().render(scene, options).beauty);
+    printf("lights in one place: %.4f of the closed form\n", found / expected);
+    // Powers of walks are squares of even numbers: a relative variance of 0.8. And 1 % of light comes back from the screen.
+    EXPECT_NEAR(found / expected, 1, 4 * std::sqrt(0.8 / kWalks) + 0.01);
+}
+
+TEST(VplHazards, BrightLampsAreDimOnesTimesTheirPower) {
+    const std::string fog =
+        R"({"name": "fog", "medium": {"type": "homogeneous", "shape": "box", "size": [4, 3, 4], "scattering": [0.3, 0.3, 0.3],
+        "absorption": [0, 0.1, 0.2], "anisotropy": 0.5}, "translation": [0, 1.5, 0]},)";
+    const std::vector<std::string> settings = {"gi.vpl.walks=64"};
+    Image one = pictureOf(corner(1, fog), settings);
+    const Image million = pictureOf(corner(1e6, fog), settings),
+                power = pictureOf(corner(1 << 20, fog), settings);
+    // The chance by which a walk goes on is a quotient of powers: its last digit may decide otherwise, once in 1e7 or so. Not where only exponents change.
+    for (float& value : one.pixels) value *= 1 << 20;
+    EXPECT_EQ(power.pixels, one.pixels);
+    for (float& value : one.pixels) value *= 1e6f / (1 << 20);
+    const ImageMetrics found = compareImages(million, one).value();
+    EXPECT_LT(found.relmse, 1e-8);
+    EXPECT_NEAR(found.energy, 1, 1e-5);
+}
+
+TEST(VplHazards, TheMeanIsTheSameForBoundsOverFourDecades) {
+    // Of the bound, which is 1 over the square of a distance. The walks are the same each time, and their noise, which is most of it, too.
+    const std::string fog =
+        R"({"tyndall": 1, "camera": "eye", "nodes": [
+        {"name": "box", "medium": {"type": "homogeneous", "shape": "box", "size": [3, 2, 3], "scattering": [1.2, 1, 0.8], "absorption": [0, 0.1, 0.3]}},
+        {"name": "lamp", "light": {"type": "point", "intensity": 10, "radius": 0.05}, "translation": [0.4, 0.3, -0.5]},
+        {"name": "eye", "camera": {"type": "perspective", "yfov": 0.8}, "translation": [0, 0.3, 4.5]}]})";
+    const auto mean = [&](const char* clamp) {
+        return meanOf(
+            pictureOf(fog, {"gi.vpl.walks=512", fmt::format("gi.vpl.clamp={}", clamp)}, 8));
+    };
+    const double truth = mean("0.04");
+    for (const char* clamp : {"0", "0.2", "1", "4"}) {
+        const double found = mean(clamp) / truth;
+        printf("clamp %s: %.4f of the light at 0.04\n", clamp, found);
+        // At 4 the bound is a free path: of what it takes away, F(1) = 0.47, a step leaves F(1/4) = 0.15. The rest is noise of points near lights.
+        EXPECT_LT(found, 1.03) << clamp;
+        EXPECT_GT(found, std::string(clamp) == "4" ? 0.97 - 0.47 * 0.15 : 0.97) << clamp;
+    }
+}
+
+TEST(VplHazards, SharpPhaseFunctions) {
+    // Of lights that face the eye no pixel gets more than a thousand times the mean up to |g| = 0.9; beyond, spots are brighter (docs/techniques/vpl.md), but finite.
+    for (const double g : {-0.999, -0.99, -0.9, 0.9, 0.99, 0.999}) {
+        const std::string fog = fmt::format(
+            R"({{"name": "fog", "medium": {{"type": "homogeneous", "shape": "box", "size": [4, 3, 4], "scattering": [0.3, 0.3, 0.3],
+                "absorption": [0, 0.1, 0.2], "anisotropy": {}}}, "translation": [0, 1.5, 0]}},)",
+            g);
+        const Image picture = pictureOf(corner(50, fog), {"gi.vpl.walks=128"}, 1, 3);
+        printf("g %g: brightest pixel %.0f times the mean\n", g, largestOverMean(picture));
+        EXPECT_GT(meanOf(picture), 0) << g;
+        EXPECT_GT(meanOf(pictureOf(alongABeam(g), {"gi.vpl.walks=64"})), 0) << g;
+        if (std::abs(g) <= 0.9) {
+            EXPECT_LT(largestOverMean(picture), 1e3) << g;
+        }
+    }
+}
+
+} // namespace
+} // namespace tyndall::test
