@@ -85,7 +85,16 @@ SurfaceLight gatherSurface(Receiver r, uint number, uint stride, uvec2 pixel) {
     float cosine = dot(r.normal, direction);
     if (cosine > 0.0) {
         vec4 noise = pixelRandom(pixel, 14u);
-        vec3 near = nearMedium(uint(u.z * float(vpl.classes)), r.position, direction, sqrt(vpl.clampSquared * z), noise.xyz, noise.w);
+        float reach = sqrt(vpl.clampSquared * z);
+        float t;
+        Segment there;
+        vec3 near = vec3(0.0);
+        if (drawNearPoint(r.position, direction, reach, noise.w, t, there)) {
+            uint number = uint(u.z * float(vpl.classes));
+            near = walksInMedium(number, r.position + direction * t, direction, there, relaxedBound(reach));
+            near += segmentInScatter(Ray(r.position, direction), there, vpl.lightsOfScene, noise.xyz, number);
+            near *= nearPointWeight(r.position, direction, reach, t);
+        }
         addLight(sum, r, direction, near * (kPi * cosine / max(z, 1e-3)));
     }
 #endif

@@ -52,17 +52,20 @@ Segment pointSegment(Ray ray, float at, float scale) {
     return s;
 }
 
-/// ∫ (1 - t²/reach²) · transmittance · light that media scatter towards `position`, over t from 0 to reach along `direction`. The distance is drawn by
-/// the first factor, so that it weighs nothing. What is gathered there has the bound relaxed, and misses what that takes away.
-vec3 nearMedium(uint number, vec3 position, vec3 direction, float reach, vec3 u, float v) {
-    float t = reach * 2.0 * sin(asin(v) / 3.0);
-    Ray ray = Ray(position, direction);
-    Segment there = pointSegment(ray, t, reach);
-    vec3 at = position + direction * t;
-    if (!there.scatters || triangleBetween(position, at)) return vec3(0.0);
-    vec3 light = walksInMedium(number, at, direction, there, min(vpl.clampSquared, reach * reach) / (vpl.relaxed * vpl.relaxed));
-    light += segmentInScatter(ray, there, vpl.lightsOfScene, u, number);
-    return 2.0 / 3.0 * reach * exp(-opticalDepthAlong(position, direction, t)) * light;
+/// A point near `position`, for ∫ (1 - t²/reach²) · transmittance · light that media scatter towards `position`, over t from 0 to reach along
+/// `direction`: the distance t is drawn by the first factor. False where no medium is, or behind a wall.
+bool drawNearPoint(vec3 position, vec3 direction, float reach, float u, out float t, out Segment there) {
+    t = reach * 2.0 * sin(asin(u) / 3.0);
+    there = pointSegment(Ray(position, direction), t, reach);
+    return there.scatters && !triangleBetween(position, position + direction * t);
 }
+
+/// Of light that is scattered at that point: transmittance over density, metres.
+vec3 nearPointWeight(vec3 position, vec3 direction, float reach, float t) {
+    return 2.0 / 3.0 * reach * exp(-opticalDepthAlong(position, direction, t));
+}
+
+/// 1/b at that point. What is gathered there has the bound relaxed, and misses what that takes away.
+float relaxedBound(float reach) { return min(vpl.clampSquared, reach * reach) / (vpl.relaxed * vpl.relaxed); }
 
 #endif

@@ -28,33 +28,61 @@ float localClampSquared(Segment s) {
     return min(vpl.clampSquared, freePath * freePath);
 }
 
-/// What the bound takes away from the light that a segment scatters at `position`.
-vec3 compensation(float clampSquared, uint number, vec3 position, vec3 direction, Segment s, vec3 u, float v) {
-    float weight;
-    vec3 back = phaseDirection(s, direction, u, weight);
-    vec3 scattering = vec3(0.0);
-    for (int g = 0; g < MARCH_PHASE_GROUPS; ++g) scattering += s.scattering[g];
-    return scattering * weight * nearMedium(number, position, back, sqrt(clampSquared), u, v);
+vec3 scatteringOf(Segment s) {
+    vec3 sum = vec3(0.0);
+    for (int g = 0; g < MARCH_PHASE_GROUPS; ++g) sum += s.scattering[g];
+    return sum;
 }
 
-/// The same without following anything, as if light were even all around (validation: compensation algebra): with F the part that is lost of
+/// Held light with what the bound takes away from it, as if light were even all around (validation: compensation algebra): with F the part that is lost of
 /// light that is scattered here, S = S_held + albedo F (S_direct + S).
 vec3 evenCompensation(vec3 held, float clampSquared, Segment s, Ray ray, vec3 u, uint number) {
-    vec3 scattering = vec3(0.0);
-    for (int g = 0; g < MARCH_PHASE_GROUPS; ++g) scattering += s.scattering[g];
     float reach = sqrt(clampSquared);
-    vec3 albedo = min(scattering / max(s.depth, vec3(1e-30)), vec3(1.0));
+    vec3 albedo = min(scatteringOf(s) / max(s.depth, vec3(1e-30)), vec3(1.0));
     vec3 again = albedo * clampLoss(s.depth * (reach / s.size));
     Segment here = pointSegment(ray, 0.0, reach);
     vec3 direct = s.size * segmentInScatter(ray, here, vpl.lightsOfScene, u, number);
     return (held + again * direct) / max(1.0 - again, vec3(1e-3));
 }
 
+/// Light that a segment scatters at `position` against `direction`: of one class of walks, and what compensation makes up for, from another's.
+/// A loop, for shaders are compiled with all that they call in place: walksInMedium() is to stand here once.
+vec3 gatherAt(uint number, uint other, vec3 position, vec3 direction, Segment s, vec4 u) {
+    float clampSquared = localClampSquared(s);
+    vec3 light = vec3(0.0);
+    vec3 weight = vec3(1.0);
+    Ray back = Ray(position, direction);
+    vec3 at = position;
+    Segment here = s;
+    float bound = clampSquared;
+    for (uint step = 0u;; ++step) {
+        vec3 gathered = walksInMedium(step == 0u ? number : other, at, back.direction, here, bound);
+#if COMPENSATION == 2
+        if (step > 0u) gathered += segmentInScatter(back, here, vpl.lightsOfScene, u.xyz, number);
+        light += weight * gathered;
+        if (step == vpl.compensation / kVplTraced) break;
+        float overDensity;
+        back.direction = phaseDirection(s, direction, u.xyz, overDensity);
+        float reach = sqrt(clampSquared);
+        float t;
+        if (!drawNearPoint(position, back.direction, reach, u.w, t, here)) break;
+        at = position + back.direction * t;
+        bound = relaxedBound(reach);
+        weight = scatteringOf(s) * overDensity * nearPointWeight(position, back.direction, reach, t);
+#else
+        light = gathered;
+        break;
+#endif
+    }
+#if COMPENSATION == 1
+    light = evenCompensation(light, clampSquared, s, back, u.xyz, number);
+#endif
+    return light;
+}
+
 /// How much of what a ray gathers a segment stands for, were light the same everywhere: what it scatters and how much of that gets to the eye.
 float importanceOf(Segment s, vec3 before) {
-    vec3 scattering = vec3(0.0);
-    for (int g = 0; g < MARCH_PHASE_GROUPS; ++g) scattering += s.scattering[g];
-    return meanOf(scattering * exp(-before) * oneMinusExpOverX(s.depth));
+    return meanOf(scatteringOf(s) * exp(-before) * oneMinusExpOverX(s.depth));
 }
 
 /// Nits that reach the ray's origin from up to `distance` metres: gathered at points that are drawn evenly in importance, once it is known how much
@@ -108,13 +136,7 @@ vec3 lightScatteredAlong(Ray ray, float distance, uvec2 pixel) {
         ++number;
         GatherPoint point = gatherBySegment(s, noise);
         vec3 position = ray.origin + ray.direction * (s.start + s.size * point.fraction);
-        float clampSquared = localClampSquared(s);
-        vec3 light = walksInMedium(number, position, ray.direction, s, clampSquared);
-#if COMPENSATION == 1
-        light = evenCompensation(light, clampSquared, s, Ray(position, ray.direction), u.xyz, number);
-#elif COMPENSATION == 2
-        light += compensation(clampSquared, number + other, position, ray.direction, s, u.xyz, u.w);
-#endif
+        vec3 light = gatherAt(number, number + other, position, ray.direction, s, u);
         sum += exp(-before) * point.weight * light / expected;
         noise = fract(noise + 0.61803399);
         u = fract(u + vec4(0.85667488, 0.73389185, 0.62870672, 0.53859725)); // powers of the root of x⁵ = x + 1: well spread in four dimensions

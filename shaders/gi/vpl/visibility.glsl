@@ -29,9 +29,9 @@ uint triangleSays(uint id, vec3 from, vec3 to, float rounding) {
     return crossed ? kHides : kDoubtful;
 }
 
-/// One node of the tree. True where a triangle is found that lies between; else `node` becomes the next.
-bool triangleAtNode(inout uint node, vec3 from, vec3 to, vec3 inverse, float rounding) {
-    if (node >= vpl.treeSize) return false;
+/// To the next node of the tree, unless a leaf whose box the way crosses was found already: its triangle.
+void nextNode(inout uint node, inout uint triangle, vec3 from, vec3 inverse) {
+    if (triangle != kVplNothing || node >= vpl.treeSize) return;
     VplTreeNode here = vplTree[node];
     vec3 low = (here.minimum - from) * inverse;
     vec3 high = (here.maximum - from) * inverse;
@@ -39,7 +39,7 @@ bool triangleAtNode(inout uint node, vec3 from, vec3 to, vec3 inverse, float rou
     float leave = min(minimumOf(max(low, high)), 1.0);
     bool inside = enter <= leave * (1.0 + 1e-5); // boxes may be flat
     node = inside ? node + 1u : here.next;
-    return inside && triangleSays(here.triangle, from, to, rounding) == kHides;
+    if (inside) triangle = here.triangle;
 }
 
 /// Does a triangle lie between two points? Nothing within rounding of either counts: both may lie on surfaces.
@@ -48,11 +48,15 @@ bool triangleBetween(vec3 from, vec3 to) {
     float rounding = kVplRounding * (length(way) + length(to));
     vec3 inverse = 1.0 / mix(way, vec3(1e-20), equal(way, vec3(0.0)));
     uint node = 0u;
-    // Four nodes a round: llvmpipe ends all loops of an invocation after 65,535 rounds.
-    while (node < vpl.treeSize)
-        if (triangleAtNode(node, from, to, inverse, rounding) || triangleAtNode(node, from, to, inverse, rounding) ||
-            triangleAtNode(node, from, to, inverse, rounding) || triangleAtNode(node, from, to, inverse, rounding))
-            return true;
+    // Up to four nodes a round: llvmpipe ends all loops of an invocation after 65,535 rounds.
+    while (node < vpl.treeSize) {
+        uint triangle = kVplNothing;
+        nextNode(node, triangle, from, inverse);
+        nextNode(node, triangle, from, inverse);
+        nextNode(node, triangle, from, inverse);
+        nextNode(node, triangle, from, inverse);
+        if (triangleSays(triangle, from, to, rounding) == kHides) return true;
+    }
     return false;
 }
 
