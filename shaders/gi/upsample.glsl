@@ -1,8 +1,8 @@
 // From one ray for a square of pixels to every pixel, for light that media scatter. Who includes this defines
 //
-//     vec3 mediaLight(Ray ray, float distance, uvec2 pixel)
+//     vec4 mediaLight(Ray ray, float distance, uvec2 pixel)
 //
-// for pixels that no ray near them fits.
+// for pixels that no ray near them fits; w: 1, or 0 where another pass is to fill the pixel.
 #include "media/nearest_rays.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
@@ -35,6 +35,7 @@ void main() {
         opacity += weight * (1.0 - rayThrough);
     }
     sum = scaledByOpacity(sum / total, opacity / total, 1.0 - through);
-    if ((params.flags & kMarchRefine) != 0u && best < params.refineWeight) sum = mediaLight(cameraRay(vec2(pixel) + 0.5), distance, uvec2(pixel));
-    imageStore(inScatter, pixel, vec4(sum, 1.0));
+    vec4 light = vec4(sum, 1.0);
+    if ((params.flags & kMarchRefine) != 0u && best < params.refineWeight) light = mediaLight(cameraRay(vec2(pixel) + 0.5), distance, uvec2(pixel));
+    imageStore(inScatter, pixel, light);
 }

@@ -7,6 +7,7 @@ TYNDALL_SHARED_BEGIN
 TYNDALL_CONST uint kMarchInScatter = 1u; // light scattered once is wanted
 TYNDALL_CONST uint kMarchEmission = 2u;  // emission of the media is wanted
 TYNDALL_CONST uint kMarchRefine = 4u;    // upsampling marches again where no coarse sample fits
+TYNDALL_CONST uint kMarchFill = 8u;      // this pass does that, for pixels that upsampling left open
 
 struct MarchParams {
     uint lightCount;

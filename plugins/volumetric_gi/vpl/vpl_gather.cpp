@@ -41,8 +41,15 @@ int32_t steppedKinds(const MediaResources& media, bool towardsLights) {
     return mediaKinds(media, towardsLights) & ~int32_t(gpu::kMediaExactGrids);
 }
 
+enum class Stage {
+    Squares, // or every pixel
+    Spread,  // from squares to pixels
+    Fill,    // pixels that were left open
+};
+
 /// What every pass that gathers reads.
 struct GatherData {
+    Stage stage = Stage::Squares;
     ViewResources view;
     GBuffer gbuffer;
     LightResources sceneLights;
@@ -50,7 +57,7 @@ struct GatherData {
     VplBuffers lights;
     gpu::VplParams params;
     gpu::MarchParams march;
-    fg::TextureHandle transmittance, coarse[2], result[2];
+    fg::TextureHandle transmittance, before, result; // before: coarse, or with pixels left open
 };
 
 void declare(fg::Builder& builder, GatherData& data, const plugin::FrameInputs& inputs,
@@ -99,6 +106,14 @@ fg::ComputeCommand begin(const GatherData& data, fg::PassContext& context, const
     return command;
 }
 
+/// For shaders that gather nothing.
+fg::ComputeCommand spread(const GatherData& data, fg::PassContext& context, const char* shader) {
+    auto command = context.compute(shader);
+    bindView(command, data.view);
+    command.params(data.march);
+    return command;
+}
+
 /// Light is never even all around a surface: that mode is for media alone.
 uint32_t surfaceMode(const GatherData& data) {
     return data.params.compensation == gpu::kVplTraced ? gpu::kVplTraced : gpu::kVplClamped;
@@ -111,38 +126,41 @@ void bindSurfaces(fg::ComputeCommand& command, const GBuffer& gbuffer) {
         .bind("gbufferMaterial", gbuffer.material);
 }
 
-/// Light that media scatter to the eye: a ray for a square of pixels or, from these `rays`, for every pixel.
+/// Light that media scatter to the eye. `before`: of the stage before.
 fg::TextureHandle addMarch(fg::FrameGraph& graph, const plugin::FrameInputs& inputs,
-                           const VplBuffers& lights, const VplGather& gather,
-                           fg::TextureHandle rays) {
-    const int factor = rays ? 1 : gather.mediaFactor;
+                           const VplBuffers& lights, const VplGather& gather, Stage stage,
+                           fg::TextureHandle before) {
+    constexpr const char* kPasses[] = {"gi.vpl.march", "gi.vpl.upsample", "gi.vpl.refine"};
     return graph
         .addPass<GatherData>(
-            rays ? "gi.vpl.upsample" : "gi.vpl.march",
+            kPasses[int(stage)],
             [&](fg::Builder& builder, GatherData& data) {
                 if (inputs.media.count == 0 || !inputs.transmittance)
                     return builder.skip("no medium in view");
                 declare(builder, data, inputs, lights, gather, gather.mediaFactor);
                 data.gbuffer.depth = builder.read(inputs.gbuffer.depth);
-                if (rays) {
-                    data.transmittance = builder.read(inputs.transmittance);
-                    data.coarse[0] = builder.read(rays);
-                }
-                data.result[0] =
-                    builder.create(factor == 1 ? "gi.vpl.inScatter" : "gi.vpl.coarse.inScatter",
-                                   picture(inputs, factor));
+                data.stage = stage;
+                if (stage == Stage::Spread) data.transmittance = builder.read(inputs.transmittance);
+                if (stage != Stage::Squares) data.before = builder.read(before);
+                if (stage == Stage::Fill) data.march.flags |= gpu::kMarchFill;
+                data.result = builder.create(
+                    "gi.vpl.inScatter",
+                    picture(inputs, stage == Stage::Squares ? gather.mediaFactor : 1));
             },
             [](const GatherData& data, fg::PassContext& context) {
-                auto command = begin(data, context,
-                                     data.coarse[0] ? "gi/vpl/upsample.comp" : "gi/vpl/march.comp",
-                                     data.params.compensation);
-                command.bind("depth", data.gbuffer.depth).bind("inScatter", data.result[0]);
-                if (data.coarse[0])
+                auto command =
+                    data.stage == Stage::Spread
+                        ? spread(data, context, "gi/vpl/upsample.comp")
+                        : begin(data, context, "gi/vpl/march.comp", data.params.compensation);
+                command.bind("depth", data.gbuffer.depth).bind("inScatter", data.result);
+                if (data.stage == Stage::Spread)
                     command.bind("transmittance", data.transmittance)
-                        .bind("coarseInScatter", data.coarse[0]);
-                command.dispatchOver(data.result[0]);
+                        .bind("coarseInScatter", data.before);
+                else // where nothing is before, it is not looked at, but has to be something
+                    command.bind("gathered", data.before ? data.before : data.gbuffer.depth);
+                command.dispatchOver(data.result);
             })
-        .result[0];
+        .result;
 }
 
 /// Maps of the grids' optical depth around each light.
@@ -211,52 +229,67 @@ VplBuffers addVplUpload(fg::FrameGraph& graph, const plugin::FrameInputs& inputs
 
 fg::TextureHandle addVplSurfaces(fg::FrameGraph& graph, const plugin::FrameInputs& inputs,
                                  const VplBuffers& lights, const VplGather& gather) {
-    const GatherData& squares = graph.addPass<GatherData>(
-        "gi.vpl.surfaces",
-        [&](fg::Builder& builder, GatherData& data) {
-            declare(builder, data, inputs, lights, gather, gather.surfaceFactor);
-            readSurfaces(builder, data, inputs);
-            const fg::TextureDesc desc = picture(inputs, gather.surfaceFactor);
-            data.result[0] = builder.create("gi.vpl.diffuse", desc);
-            data.result[1] = builder.create("gi.vpl.specular", desc);
-        },
-        [](const GatherData& data, fg::PassContext& context) {
-            auto command = begin(data, context, "gi/vpl/surfaces.comp", surfaceMode(data));
-            bindSurfaces(command, data.gbuffer);
-            command.bind("diffuse", data.result[0])
-                .bind("specular", data.result[1])
-                .dispatchOver(data.result[0]);
-        });
-    return graph
-        .addPass<GatherData>(
-            "gi.vpl.upsampleSurfaces",
-            [&](fg::Builder& builder, GatherData& data) {
-                declare(builder, data, inputs, lights, gather, gather.surfaceFactor);
-                readSurfaces(builder, data, inputs);
-                for (int i = 0; i < 2; ++i) data.coarse[i] = builder.read(squares.result[i]);
-                if (inputs.transmittance) data.transmittance = builder.read(inputs.transmittance);
-                data.result[0] = builder.create("gi.vpl.surfaceRadiance", picture(inputs, 1));
-            },
-            [](const GatherData& data, fg::PassContext& context) {
-                auto command =
-                    begin(data, context, "gi/vpl/upsample_surfaces.comp", surfaceMode(data));
-                bindSurfaces(command, data.gbuffer);
-                // Where no medium is in view it is not looked at, but has to be something.
-                if (data.media.count > 0)
-                    command.bind("transmittance",
-                                 data.transmittance ? data.transmittance : data.coarse[0]);
-                command.bind("diffuse", data.coarse[0])
-                    .bind("specular", data.coarse[1])
-                    .bind("surfaceRadiance", data.result[0])
-                    .dispatchOver(data.result[0]);
-            })
-        .result[0];
+    const auto gathering = [&](const char* name, Stage stage, fg::TextureHandle before) {
+        return graph
+            .addPass<GatherData>(
+                name,
+                [&](fg::Builder& builder, GatherData& data) {
+                    declare(builder, data, inputs, lights, gather, gather.surfaceFactor);
+                    readSurfaces(builder, data, inputs);
+                    fg::TextureDesc desc = picture(inputs, 1);
+                    if (stage == Stage::Squares) {
+                        desc = picture(inputs, gather.surfaceFactor);
+                        desc.width *= 2;
+                    } else {
+                        data.before = builder.read(before);
+                        data.march.flags |= gpu::kMarchFill;
+                    }
+                    data.result = builder.create("gi.vpl.surfaceLight", desc);
+                },
+                [](const GatherData& data, fg::PassContext& context) {
+                    auto command = begin(data, context, "gi/vpl/surfaces.comp", surfaceMode(data));
+                    bindSurfaces(command, data.gbuffer);
+                    command.bind("gathered", data.before ? data.before : data.gbuffer.depth)
+                        .bind("surfaceLight", data.result)
+                        .dispatchOver(data.result);
+                })
+            .result;
+    };
+    const fg::TextureHandle squares = gathering("gi.vpl.surfaces", Stage::Squares, {});
+    const fg::TextureHandle pixels =
+        graph
+            .addPass<GatherData>(
+                "gi.vpl.upsampleSurfaces",
+                [&](fg::Builder& builder, GatherData& data) {
+                    declare(builder, data, inputs, lights, gather, gather.surfaceFactor);
+                    readSurfaces(builder, data, inputs);
+                    data.before = builder.read(squares);
+                    if (inputs.transmittance)
+                        data.transmittance = builder.read(inputs.transmittance);
+                    data.result = builder.create("gi.vpl.surfaceRadiance", picture(inputs, 1));
+                },
+                [](const GatherData& data, fg::PassContext& context) {
+                    auto command = spread(data, context, "gi/vpl/upsample_surfaces.comp");
+                    bindSurfaces(command, data.gbuffer);
+                    command.params(data.params, "Vpl")
+                        .bind("squares", data.before)
+                        .bind("surfaceRadiance", data.result)
+                        .bind("transmittance",
+                              data.transmittance ? data.transmittance : data.before)
+                        .dispatchOver(data.result);
+                })
+            .result;
+    return gather.surfaceFactor == 1 ? pixels
+                                     : gathering("gi.vpl.refineSurfaces", Stage::Fill, pixels);
 }
 
 fg::TextureHandle addVplMedia(fg::FrameGraph& graph, const plugin::FrameInputs& inputs,
                               const VplBuffers& lights, const VplGather& gather) {
-    const fg::TextureHandle rays = addMarch(graph, inputs, lights, gather, {});
-    return !rays || gather.mediaFactor == 1 ? rays : addMarch(graph, inputs, lights, gather, rays);
+    const fg::TextureHandle rays = addMarch(graph, inputs, lights, gather, Stage::Squares, {});
+    if (!rays || gather.mediaFactor == 1) return rays;
+    const fg::TextureHandle pixels = addMarch(graph, inputs, lights, gather, Stage::Spread, rays);
+    if (!(inputs.march.flags & gpu::kMarchRefine)) return pixels;
+    return addMarch(graph, inputs, lights, gather, Stage::Fill, pixels);
 }
 
 } // namespace tyndall::volumetric_gi

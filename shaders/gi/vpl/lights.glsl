@@ -6,9 +6,8 @@
 #include "common/view.glsl"
 #include "lighting/brdf.glsl"
 #include "gi/vpl/bound.glsl"
-#include "shared/vpl.h"
+#include "gi/vpl/params.glsl"
 
-layout(std140) uniform Vpl { VplParams vpl; };
 layout(std430) readonly buffer VplLights { VplData vplLights[]; };
 layout(std430) readonly buffer VplWalks { uint vplWalks[]; };   // where each walk's lights begin; one more: where the last ends
 layout(std430) readonly buffer VplDepths { uvec2 vplDepths[]; }; // the grids' optical depth, rgb in half precision, by light, direction, distance

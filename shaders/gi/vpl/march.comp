@@ -1,4 +1,4 @@
-// Light of virtual point lights that media scatter to the eye: one ray for each pixel, or for squares of them.
+// Light of virtual point lights that media scatter to the eye: one ray for each pixel, or for squares of them; or for pixels that upsampling left open.
 // COMPENSATION: kVplClamped, kVplClosedForm or kVplTraced.
 #include "gi/vpl/scattered_light.glsl"
 #include "media/nearest_rays.glsl"
@@ -7,13 +7,19 @@ layout(local_size_x = 8, local_size_y = 8) in;
 
 layout(std140) uniform Params { MarchParams params; };
 uniform sampler2D depth;
+uniform sampler2D gathered; // with kMarchFill: what is there already; w: 0 where nothing is
 layout(rgba32f) writeonly uniform image2D inScatter;
 
 void main() {
     ivec2 ray = ivec2(gl_GlobalInvocationID.xy);
     if (any(greaterThanEqual(ray, imageSize(inScatter)))) return;
-    ivec2 pixel = marchedPixel(ray, params, textureSize(depth, 0));
-    vec2 centre = vec2(pixel) + 0.5;
-    float distance = rayDistanceFromDepth(centre, texelFetch(depth, pixel, 0).r);
-    imageStore(inScatter, ray, vec4(lightScatteredAlong(cameraRay(centre), distance, uvec2(ray)), 1.0));
+    bool fills = (params.flags & kMarchFill) != 0u;
+    vec4 light = fills ? texelFetch(gathered, ray, 0) : vec4(0.0);
+    if (light.w == 0.0) {
+        ivec2 pixel = fills ? ray : marchedPixel(ray, params, textureSize(depth, 0));
+        vec2 centre = vec2(pixel) + 0.5;
+        float distance = rayDistanceFromDepth(centre, texelFetch(depth, pixel, 0).r);
+        light = vec4(lightScatteredAlong(cameraRay(centre), distance, uvec2(ray)), 1.0);
+    }
+    imageStore(inScatter, ray, light);
 }

@@ -1,24 +1,36 @@
-// Light of virtual point lights on surfaces, before the media between them and the eye: of a pixel in each square, and of all walks; or, where
-// squares are single pixels, of one class of walks.
+// Light of virtual point lights on surfaces, before the media between them and the eye: of a pixel in each square, over the base colour and by the
+// microfacets; or of pixels that upsampling left open, both together.
 #include "gi/vpl/gather_surface.glsl"
 #include "media/nearest_rays.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
 layout(std140) uniform Params { MarchParams params; };
-layout(rgba32f) writeonly uniform image2D diffuse;  // over the base colour
-layout(rgba32f) writeonly uniform image2D specular;
+uniform sampler2D gathered; // with kMarchFill: what is there already; w: 0 where nothing is
+layout(rgba32f) writeonly uniform image2D surfaceLight; // the microfacets' to the right of the other; or nits
+
+SurfaceLight lightAt(ivec2 pixel, uvec2 number, out Receiver r) {
+    SurfaceLight light = SurfaceLight(vec3(0.0), vec3(0.0));
+    if (!receiverAt(pixel, r)) return light;
+    uint first = uint(pixelNoise(number, 20u) * float(vpl.surfaceClasses)) % vpl.surfaceClasses;
+    return gatherSurface(r, first, vpl.surfaceClasses, number);
+}
 
 void main() {
     ivec2 square = ivec2(gl_GlobalInvocationID.xy);
-    if (any(greaterThanEqual(square, imageSize(diffuse)))) return;
-    ivec2 pixel = marchedPixel(square, params, textureSize(gbufferDepth, 0));
+    ivec2 size = imageSize(surfaceLight);
+    bool fills = (params.flags & kMarchFill) != 0u;
+    if (!fills) size.x /= 2;
+    if (any(greaterThanEqual(square, size))) return;
+    vec4 there = fills ? texelFetch(gathered, square, 0) : vec4(0.0);
     Receiver r;
-    SurfaceLight light = SurfaceLight(vec3(0.0), vec3(0.0));
-    if (receiverAt(pixel, r)) {
-        uint number = uint(pixelNoise(uvec2(square), 20u) * float(vpl.surfaceClasses));
-        light = gatherSurface(r, number % vpl.surfaceClasses, vpl.surfaceClasses, uvec2(square));
+    SurfaceLight light;
+    if (there.w == 0.0) light = lightAt(fills ? square : marchedPixel(square, params, textureSize(gbufferDepth, 0)), uvec2(square), r);
+    if (fills) {
+        if (there.w == 0.0) there = vec4(r.brdf.baseColor * light.diffuse + light.specular, 1.0);
+        imageStore(surfaceLight, square, there);
+    } else {
+        imageStore(surfaceLight, square, vec4(light.diffuse, 1.0));
+        imageStore(surfaceLight, square + ivec2(size.x, 0), vec4(light.specular, 1.0));
     }
-    imageStore(diffuse, square, vec4(light.diffuse, 1.0));
-    imageStore(specular, square, vec4(light.specular, 1.0));
 }

@@ -1,19 +1,17 @@
 // From the surfaces of surfaces.comp to every pixel: of the four nearest those count that lie in about the same plane and face the same way. A pixel that
-// none of them fits gathers on its own.
-#include "gi/vpl/gather_surface.glsl"
+// none of them fits is left to it again: shaders that gather are large.
+#include "gi/vpl/receiver.glsl"
 #include "media/nearest_rays.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
 layout(std140) uniform Params { MarchParams params; };
-uniform sampler2D diffuse;
-uniform sampler2D specular;
-layout(rgba32f) writeonly uniform image2D surfaceRadiance;
+uniform sampler2D squares; // light over the base colour, and to the right of it that of microfacets
+uniform sampler2D transmittance; // of media in view
+layout(rgba32f) writeonly uniform image2D surfaceRadiance; // w: 0 where it is to be gathered
 
 const float kFar = 0.1; // of the distance to the eye: on a surface that is seen at a grazing angle neighbouring pixels lie far apart
 
-#if MEDIA
-uniform sampler2D transmittance;
 const float kDeep = 0.3; // optical depth over which light changes in a medium
 
 /// Of how much more medium one pixel is seen through than another: in thick fog light changes over a free path.
@@ -22,7 +20,6 @@ float depthApart(ivec2 a, ivec2 b) {
     vec3 quotient = max(texelFetch(transmittance, a, 0).rgb, vec3(1e-30)) / max(texelFetch(transmittance, b, 0).rgb, vec3(1e-30));
     return maximumOf(abs(log(quotient)));
 }
-#endif
 
 /// How well the light of one surface stands for another's: 1 for a perfect fit.
 float surfaceLikeness(Receiver r, Receiver other, float distance) {
@@ -43,33 +40,29 @@ void main() {
         return;
     }
     float distance = max(length(r.position - cameraRay(vec2(pixel) + 0.5).origin), 1e-20);
-    SurfaceLight sum = SurfaceLight(vec3(0.0), vec3(0.0));
+    ivec2 size = textureSize(squares, 0) / ivec2(2, 1);
+    ivec2 right = ivec2(size.x, 0);
+    vec3 diffuse = vec3(0.0);
+    vec3 specular = vec3(0.0);
     float total = 0.0;
-    float best = 0.0;
+    float best = params.factor > 1u ? 0.0 : 1.0;
     if (params.factor > 1u) {
         for (int i = 0; i < 4; ++i) {
-            NearRay near = nearRay(i, pixel, params, textureSize(diffuse, 0), textureSize(gbufferDepth, 0));
+            NearRay near = nearRay(i, pixel, params, size, textureSize(gbufferDepth, 0));
             Receiver other;
             if (!receiverAt(near.pixel, other)) continue;
-            float like = surfaceLikeness(r, other, distance);
-#if MEDIA
-            like /= 1.0 + depthApart(pixel, near.pixel) / kDeep;
-#endif
+            float like = surfaceLikeness(r, other, distance) / (1.0 + depthApart(pixel, near.pixel) / kDeep);
             float weight = rayWeight(like, near.share);
             best = max(best, like);
             total += weight;
-            sum.diffuse += weight * texelFetch(diffuse, near.coarse, 0).rgb;
-            sum.specular += weight * texelFetch(specular, near.coarse, 0).rgb;
+            diffuse += weight * texelFetch(squares, near.coarse, 0).rgb;
+            specular += weight * texelFetch(squares, near.coarse + right, 0).rgb;
         }
-        sum.diffuse /= max(total, 1e-30);
-        sum.specular /= max(total, 1e-30);
-        if (best < params.refineWeight) {
-            uint number = uint(pixelNoise(uvec2(pixel), 27u) * float(vpl.surfaceClasses));
-            sum = gatherSurface(r, number % vpl.surfaceClasses, vpl.surfaceClasses, uvec2(pixel));
-        }
+        diffuse /= max(total, 1e-30);
+        specular /= max(total, 1e-30);
     } else {
-        sum.diffuse = texelFetch(diffuse, pixel, 0).rgb;
-        sum.specular = texelFetch(specular, pixel, 0).rgb;
+        diffuse = texelFetch(squares, pixel, 0).rgb;
+        specular = texelFetch(squares, pixel + right, 0).rgb;
     }
-    imageStore(surfaceRadiance, pixel, vec4(r.brdf.baseColor * sum.diffuse + sum.specular, 1.0));
+    imageStore(surfaceRadiance, pixel, best < params.refineWeight ? vec4(0.0) : vec4(r.brdf.baseColor * diffuse + specular, 1.0));
 }
