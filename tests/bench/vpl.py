@@ -14,21 +14,90 @@ import pathlib
 import sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).parent))
-from lpv import MEDIA, SIZE, SURFACES, Bench, load, milliseconds, scenes  # noqa: E402
+from lpv import MEDIA, SIZE, SURFACES, Bench, cornell, load, milliseconds, scenes  # noqa: E402
 from tables import ROOT, commit_date, machine, table  # noqa: E402
 
-FULL = ["--set", "gi.vpl.surfaces.resolution=full", "--set", "gi.vpl.march=full"]
-GATHERING = ("gi.vpl.surfaces", "gi.vpl.upsampleSurfaces", "gi.vpl.march", "gi.vpl.upsample")
+GATHERING = ("gi.vpl.surfaces", "gi.vpl.upsampleSurfaces", "gi.vpl.refineSurfaces"), ("gi.vpl.march", "gi.vpl.upsample", "gi.vpl.refine")
+WALKS = (64, 128, 256, 512, 1024)
+CANDIDATES = (1, 2, 4, 8, 16)
 
 
 class VplBench(Bench):
-    def picture(self, scene, label, *options):
+    def picture(self, scene, label, *options, quality="high"):
         """A picture and its report, made anew only where it is missing."""
         path = scene.with_name(scene.name.replace(".scene.json", f".vpl.{label}.exr"))
         report = path.with_suffix(".json")
         if not report.exists():
-            self.run("capture", scene, "-o", path, "--size", SIZE, "--aov", "terms", "--gi", "vpl", "--quality", "high", "--report", report, "--quiet", *options)
+            self.run("capture", scene, "-o", path, "--size", SIZE, "--aov", "terms", "--gi", "vpl", "--quality", quality, "--report", report, "--quiet", *options)
         return path, json.loads(report.read_text())
+
+    def noise(self, scene, reference, fewer):
+        """relmse that the reference itself has: half of that between it and one of other random numbers."""
+        again = scene.with_name(scene.name.replace(".scene.json", ".again.exr"))
+        if not again.exists():
+            self.run("reference", scene, "-o", again, "--size", SIZE, "--spp", max(self.spp // fewer, 16), "--seed", 1, "--terms", f"{SURFACES},{MEDIA}", "--quiet")
+        return lambda terms: f"{self.compare(again, reference, terms)[0] / 2:.3f}"
+
+
+def errors_table(bench, content, wanted, frames):
+    head = ["scene", "high, one frame: surfaces", "media", f"ultra, {frames} frames: surfaces", "media", "reference's own noise: surfaces", "media"]
+    rows = []
+    for name, scene, fewer in [("cornell, no fog", load("content/cornell.scene.json"), 1), *scenes(content), ("cloud", load("content/cloud.scene.json"), 4)]:
+        if wanted and not any(w in name for w in wanted):
+            continue
+        print(name, file=sys.stderr)
+        path = bench.scene(name, scene)
+        reference = bench.reference(path, fewer)
+        noise = bench.noise(path, reference, fewer)
+        one, _ = bench.picture(path, "one", "--frames", 2)
+        many, _ = bench.picture(path, "many", "--converge", "--frames", frames, quality="ultra")
+        fog = any("medium" in node for node in scene["nodes"])
+        solid = name != "cloud"
+        cells = lambda picture: ["{:.3f}, {:.3f}".format(*bench.compare(picture, reference, terms)) if there else "" for terms, there in ((SURFACES, solid), (MEDIA, fog))]
+        rows.append([name, *cells(one), *cells(many), noise(SURFACES) if solid else "", noise(MEDIA) if fog else ""])
+    return table(head, rows)
+
+
+def costs_table(bench):
+    """Milliseconds of one frame in which everything is made anew, by the number of walks."""
+    path = bench.scene("cornell fog, τ 2", cornell(2))
+    head = ["walks", "virtual lights", "walks, ms", "maps, ms", "surfaces, ms", "media, ms", "surfaces, ns per light and square", "media, ns per light and ray"]
+    width, height = map(int, SIZE.split("x"))
+    rows = []
+    for walks in WALKS:
+        _, report = bench.picture(path, f"cost{walks}", "--frames", 2, "--set", f"gi.vpl.walks={walks}", "--set", "gi.vpl.classes=8", "--set", "gi.vpl.keep=false",
+                                  "--set", "gi.vpl.compensation=clamped", "--set", "gi.vpl.samples=8")
+        lights = report["virtual_lights"]["gi.vpl"]
+        surfaces, media = (milliseconds(report, name) for name in ("gi.vpl.surfaces", "gi.vpl.march"))
+        squares = width * height / 4
+        rows.append([str(walks), str(lights), f"{report['walks_ms']['gi.vpl']:.1f}", f"{report['maps_ms']['gi.vpl']:.0f}", f"{surfaces:.0f}", f"{media:.0f}",
+                     f"{1e6 * surfaces / lights / squares:.0f}", f"{1e6 * media / lights / squares:.0f}"])
+    return table(head, rows)
+
+
+def choice_table(bench, content):
+    """The same number of lights gathered, chosen among more and more."""
+    found = [(name, scene, fewer) for name, scene, fewer in scenes(content) if name in ("cornell fog, τ 8", "Sponza with fog")]
+    head = ["scene", "candidates", "lights a frame", "walks, ms", "choice, ms", "maps, ms", "gathering, ms", "surfaces: relmse", "media: relmse", "", "as many walks, all gathered: ms", "surfaces: relmse", "media: relmse"]
+    rows = []
+    for name, scene, fewer in found:
+        path = bench.scene(name, scene)
+        reference = bench.reference(path, fewer)
+        base = ["--converge", "--frames", 8, "--set", "gi.vpl.march=quarter"]
+        for n in CANDIDATES:
+            chosen, report = bench.picture(path, f"choice{n}", *base, "--set", f"gi.vpl.candidates={n}")
+            gathered = sum(milliseconds(report, *names) for names in GATHERING)
+            of = lambda key, r: r[key]["gi.vpl"]
+            row = [name, str(n), str(of("virtual_lights", report)), f"{of('walks_ms', report):.1f}", f"{of('choice_ms', report):.0f}", f"{of('maps_ms', report):.0f}", f"{gathered:.0f}",
+                   *(f"{bench.compare(chosen, reference, terms)[0]:.4f}" for terms in (SURFACES, MEDIA)), ""]
+            if n <= 4:
+                every, report = bench.picture(path, f"every{n}", *base, "--set", f"gi.vpl.walks={256 * n}", "--set", f"gi.vpl.classes={8}")
+                total = sum(milliseconds(report, *names) for names in GATHERING) + of("walks_ms", report) + of("maps_ms", report)
+                row += [f"{total:.0f}", *(f"{bench.compare(every, reference, terms)[0]:.4f}" for terms in (SURFACES, MEDIA))]
+            else:
+                row += ["", "", ""]
+            rows.append(row)
+    return table(head, rows)
 
 
 def main():
@@ -42,32 +111,27 @@ def main():
     arguments = parser.parse_args()
     content = pathlib.Path(os.environ.get("TYNDALL_CONTENT", ROOT.parent / "shared/content"))
     bench = VplBench(arguments)
-    wanted = [w for w in arguments.scenes.split(",") if w]
-    rows = []
-    for name, scene, fewer in [("cornell, no fog", load("content/cornell.scene.json"), 1), *scenes(content)]:
-        if wanted and not any(w in name for w in wanted):
-            continue
-        print(name, file=sys.stderr)
-        path = bench.scene(name, scene)
-        reference = bench.reference(path, fewer)
-        one, report = bench.picture(path, "one", "--frames", 2)
-        many, _ = bench.picture(path, "many", "--converge", "--frames", arguments.frames, *FULL)
-        fog = any("medium" in node for node in scene["nodes"])
-        pair = lambda picture, terms: "{:.3f}, {:.3f}".format(*bench.compare(picture, reference, terms))
-        media = lambda picture: pair(picture, MEDIA) if fog else ""
-        rows.append([name, pair(one, SURFACES), media(one), pair(many, SURFACES), media(many),
-                     f"{milliseconds(report, *GATHERING[:2]):.0f}", f"{milliseconds(report, *GATHERING[2:]):.0f}"])
-    head = ["scene", "one frame, surfaces", "one frame, media", f"{arguments.frames} frames, surfaces", f"{arguments.frames} frames, media", "surfaces, ms", "media, ms"]
+    errors = errors_table(bench, content, [w for w in arguments.scenes.split(",") if w], arguments.frames)
+    costs, choice = costs_table(bench), choice_table(bench, content)
     arguments.page.write_text(f"""# Virtual point lights: error and time
 
 Made by `tests/bench/vpl.py` from a release build of {commit_date()}, on {machine()} with llvmpipe: a GPU is another world.
-What the columns mean and why the numbers are what they are: [techniques/vpl.md](techniques/vpl.md).
+What the columns mean and why the numbers are what they are: [techniques/vpl.md](techniques/vpl.md). The paper's figures are in [benchmarks-vpl-figures.md](benchmarks-vpl-figures.md).
 
-{SIZE} pixels at high quality, against the reference ({arguments.spp} samples a pixel, half as many for the smoke and a quarter for Sponza): relmse and energy ([compare.md](compare.md)) of the
-indirect terms on surfaces and of those in media. "{arguments.frames} frames": an average, every pixel and ray on its own, with new walks in each frame. Milliseconds are those of gathering in one
-frame in which walks and maps are kept.
+## Error
+{SIZE} pixels, against the reference ({arguments.spp} samples a pixel, half as many for the smoke and a quarter for Sponza and the cloud): relmse and energy ([compare.md](compare.md)) of the
+indirect terms on surfaces and of those in media. "{arguments.frames} frames": an average with new walks in each. The reference's own noise is half the relmse between two of other random numbers:
+what is less cannot be told from nothing.
 
-{table(head, rows)}""")
+{errors}
+## Cost
+One frame of the box with fog, τ 2, at high quality, in which walks and maps are made anew; media with 8 points a ray, one walk in 8 at each, without compensation. Twice the lights are twice the milliseconds of each phase.
+
+{costs}
+## Choice
+Averages of 8 frames at 256 walks a frame, chosen from so many times as many (`gi.vpl.candidates`); on the right all of these are gathered instead. Milliseconds are those of one frame.
+
+{choice}""")
     print(f"wrote {arguments.page}")
 
 
