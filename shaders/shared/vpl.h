@@ -12,8 +12,7 @@ struct VplData {
     vec4 normal;   // of the facet, unit, on the side that light came from; w: roughness
     vec4 shading;  // shading normal, unit; w: weight of the dielectric's coat
     vec4 travel;   // unit, of the light that arrives; w: parameter g of the phase function
-    vec4
-        power; // watts over all walks: on a surface what arrives, in a medium what is scattered; w: metres to the nearest surface that the light sees
+    vec4 power; // watts over all walks: on a surface what arrives, in a medium what is scattered
     vec4 base; // base colour; w: metallic
 };
 
@@ -31,6 +30,21 @@ struct VplTreeNode {
     uint next;
     vec3 maximum;
     uint triangle; // kVplNothing: an inner node
+};
+
+/// A point of a surface, as what is splatted into maps.
+struct VplPoint {
+    vec3 position; // render space
+    uint triangle;
+};
+
+/// Points stand in sets, each spread over all surfaces; lights take turns at them.
+struct VplPointParams {
+    vec4 around;    // where lights are: their middle; w: m², mean square of their distance from it
+    float spread;   // a point's radius over its distance from there, √(|p - around|² + w)
+    uint setSize;   // points
+    uint setCount;
+    uint padding;
 };
 
 struct VplParams {

@@ -30,18 +30,27 @@ RenderOptions optionsWith(std::vector<std::string> settings, TermSet terms = kIn
 
 TEST(Vpl, AClosedRoomStaysDark) {
     // Walls of 2 cm are far thinner than what a map's texel covers, and the room's outline ends within texels; turned, walls lie askew to everything.
-    for (const double thickness : {0.02, 0.3})
-        for (const double angle : {0.0, 0.3}) {
-            const std::vector<std::string> settings = {"gi.vpl.walks=128"};
-            const double inside =
-                indirectMean("vpl", sceneFromJson(sealedRoom(thickness, angle, true)), settings);
-            const double outside =
-                indirectMean("vpl", sceneFromJson(sealedRoom(thickness, angle, false)), settings);
-            printf("walls of %.2f m, turned by %.1f: %.2e of the light outside\n", thickness, angle,
-                   inside / outside);
-            EXPECT_GT(outside, 0);
-            EXPECT_LT(inside, 1e-4 * outside);
-        }
+    struct Case {
+        double thickness, angle;
+        const char* maps;
+    };
+    for (const auto& [thickness, angle, maps] : {Case{0.02, 0, "rays"},
+                                                 {0.02, 0.3, "rays"},
+                                                 {0.3, 0, "rays"},
+                                                 {0.3, 0.3, "rays"},
+                                                 {0.02, 0.3, "points"},
+                                                 {0.3, 0.3, "points"}}) {
+        const std::vector<std::string> settings = {
+            "gi.vpl.walks=128", fmt::format("gi.vpl.maps={}", maps), "gi.vpl.points=8192"};
+        const double inside =
+            indirectMean("vpl", sceneFromJson(sealedRoom(thickness, angle, true)), settings);
+        const double outside =
+            indirectMean("vpl", sceneFromJson(sealedRoom(thickness, angle, false)), settings);
+        printf("%s, walls of %.2f m, turned by %.1f: %.2e of the light outside\n", maps, thickness,
+               angle, inside / outside);
+        EXPECT_GT(outside, 0);
+        EXPECT_LT(inside, 1e-4 * outside);
+    }
 }
 
 TEST(Vpl, LightThatDoublesDoublesThePicture) {

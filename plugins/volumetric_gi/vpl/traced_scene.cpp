@@ -16,21 +16,6 @@ static_assert(offsetof(gpu::VplTreeNode, next) == offsetof(reference::TreeNode, 
 static_assert(offsetof(gpu::VplTreeNode, triangle) == offsetof(reference::TreeNode, triangle));
 static_assert(gpu::kVplNothing == reference::TreeNode::kInner);
 
-gpu::VplTriangle pack(const reference::SceneTriangle& from) {
-    gpu::VplTriangle triangle{};
-    const dvec3 &corner = from.corners[0], a = from.corners[1] - corner,
-                b = from.corners[2] - corner;
-    triangle.corner = vec4(vec3(corner), from.opaque ? 1 : 0);
-    const dvec3 across = glm::cross(a, b);
-    const double twiceArea = glm::length(across);
-    if (!(twiceArea > 0)) return triangle;
-    const dvec3 normal = across / twiceArea;
-    triangle.plane = vec4(vec3(normal), float(-glm::dot(normal, corner)));
-    triangle.second = vec4(vec3(glm::cross(b, normal) / twiceArea), 0);
-    triangle.third = vec4(vec3(glm::cross(normal, a) / twiceArea), 0);
-    return triangle;
-}
-
 /// Of surfaces, and of lights but for glowing media. Versions tell that nodes have moved, not which.
 struct Keys {
     uint64_t surfaces = fg::kHashStart, lights = fg::kHashStart;
@@ -80,6 +65,21 @@ Bounds roughly(const Bounds& bounds) {
 
 } // namespace
 
+gpu::VplTriangle packTriangle(const reference::SceneTriangle& from) {
+    gpu::VplTriangle triangle{};
+    const dvec3 &corner = from.corners[0], a = from.corners[1] - corner,
+                b = from.corners[2] - corner;
+    triangle.corner = vec4(vec3(corner), from.opaque ? 1 : 0);
+    const dvec3 across = glm::cross(a, b);
+    const double twiceArea = glm::length(across);
+    if (!(twiceArea > 0)) return triangle;
+    const dvec3 normal = across / twiceArea;
+    triangle.plane = vec4(vec3(normal), float(-glm::dot(normal, corner)));
+    triangle.second = vec4(vec3(glm::cross(b, normal) / twiceArea), 0);
+    triangle.third = vec4(vec3(glm::cross(normal, a) / twiceArea), 0);
+    return triangle;
+}
+
 Result<void> TracedScene::updateSurfaces(const Scene& scene, const dvec3& origin) {
     scene_.surfaces.reset();
     auto built = reference::SurfaceScene::build(scene, origin, 0);
@@ -90,7 +90,7 @@ Result<void> TracedScene::updateSurfaces(const Scene& scene, const dvec3& origin
     if (!tree.ok()) return tree.error();
     tree_ = std::move(*tree);
     triangles_.resize(triangles.size());
-    std::transform(triangles.begin(), triangles.end(), triangles_.begin(), pack);
+    std::transform(triangles.begin(), triangles.end(), triangles_.begin(), packTriangle);
     return {};
 }
 

@@ -10,6 +10,9 @@
 
 namespace tyndall::volumetric_gi {
 
+/// As shaders read it.
+gpu::VplTriangle packTriangle(const reference::SceneTriangle& triangle);
+
 class TracedScene {
 public:
     /// `guessed`: walks are to go through media that small changes of the media do not change.

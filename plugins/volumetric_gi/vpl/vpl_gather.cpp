@@ -202,6 +202,46 @@ fg::BufferHandle addDepthMaps(fg::FrameGraph& graph, const plugin::FrameInputs& 
         .depths;
 }
 
+/// What lights see, from points of surfaces.
+fg::BufferHandle addSplattedMaps(fg::FrameGraph& graph, const VplBuffers& buffers,
+                                 fg::BufferHandle points, const gpu::VplPointParams& pointParams,
+                                 const gpu::VplParams& params, uint64_t key) {
+    struct Data {
+        fg::BufferHandle lights, triangles, points, maps;
+        gpu::VplPointParams pointParams;
+        gpu::VplParams params;
+    };
+    return graph
+        .addPass<Data>(
+            "gi.vpl.maps",
+            [&](fg::Builder& builder, Data& data) {
+                data.lights = builder.read(buffers.lights);
+                data.triangles = builder.read(buffers.triangles);
+                data.points = builder.read(points);
+                data.pointParams = pointParams;
+                data.params = params;
+                const size_t words =
+                    size_t(params.lightCount) * (size_t(params.mapSide) * params.mapSide + 1);
+                data.maps = builder.create(
+                    "gi.vpl.maps", fg::BufferDesc{std::bit_ceil(std::max<size_t>(4 * words, 256))});
+                builder.cacheBy(key);
+            },
+            [](const Data& data, fg::PassContext& context) {
+                constexpr uint32_t kRow =
+                    1024; // groups: many lights need more than one row may have
+                auto command = context.compute("gi/vpl/splat_maps.comp");
+                command.params(data.params, "Vpl")
+                    .params(data.pointParams, "Points")
+                    .bind("VplLights", data.lights)
+                    .bind("VplTriangles", data.triangles)
+                    .bind("VplPoints", data.points)
+                    .bind("VplMaps", data.maps)
+                    .dispatch(std::min(data.params.lightCount, kRow),
+                              (data.params.lightCount + kRow - 1) / kRow);
+            })
+        .maps;
+}
+
 } // namespace
 
 VplBuffers readVpls(fg::Builder& builder, const VplBuffers& buffers) {
@@ -218,9 +258,15 @@ VplBuffers addVplUpload(fg::FrameGraph& graph, const plugin::FrameInputs& inputs
     VplBuffers buffers;
     buffers.lights = add("gi.vpl.lights", upload.set->lights, upload.lightsKey);
     buffers.walks = add("gi.vpl.walks", upload.set->walks, upload.mapsKey);
-    buffers.maps = add("gi.vpl.maps", *upload.maps, upload.mapsKey);
     buffers.triangles = add("gi.vpl.triangles", *upload.triangles, upload.trianglesKey);
     buffers.tree = add("gi.vpl.tree", *upload.tree, upload.trianglesKey);
+    if (upload.points->points.empty()) {
+        buffers.maps = add("gi.vpl.maps", *upload.maps, upload.mapsKey);
+    } else {
+        const fg::BufferHandle points = add("gi.vpl.points", upload.points->points, upload.mapsKey);
+        buffers.maps =
+            addSplattedMaps(graph, buffers, points, upload.points->params, params, upload.mapsKey);
+    }
     // Sizes are rounded up, so that the buffer's alone does not tell maps of one side from those of another.
     const uint64_t depthsKey = fg::mixHash(upload.lightsKey, params.depthSide);
     buffers.depths = addDepthMaps(graph, inputs, buffers.lights, depthsKey, params);

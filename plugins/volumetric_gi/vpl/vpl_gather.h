@@ -4,6 +4,7 @@
 #include "plugin/plugin_api.h"
 #include "reference/triangle_tree.h"
 #include "shared/vpl.h"
+#include "volumetric_gi/vpl/vpl_points.h"
 #include "volumetric_gi/vpl/vpl_walks.h"
 
 namespace tyndall::volumetric_gi {
@@ -31,7 +32,8 @@ Command& bindVpls(Command& command, const VplBuffers& buffers, const gpu::VplPar
 /// What goes up; must live until the frame has been executed. `lightsKey`, `mapsKey`, `trianglesKey`: of its content.
 struct VplUpload {
     const VplSet* set = nullptr;
-    const std::vector<uint32_t>* maps = nullptr;
+    const std::vector<uint32_t>* maps = nullptr; // as rays have made them
+    const SurfacePoints* points = nullptr;       // not empty: they are to be splatted into maps
     const std::vector<gpu::VplTriangle>* triangles = nullptr;
     const std::vector<reference::TreeNode>* tree = nullptr;
     uint64_t lightsKey = 0, mapsKey = 0, trianglesKey = 0;

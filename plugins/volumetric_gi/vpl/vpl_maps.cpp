@@ -1,6 +1,7 @@
 #include "volumetric_gi/vpl/vpl_maps.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 #include <tbb/parallel_for.h>
@@ -27,10 +28,11 @@ double lowestCosine(uint32_t side) { return -8.0 / double(side); }
 
 } // namespace
 
-std::vector<uint32_t> makeVisibilityMaps(const reference::SurfaceScene& surfaces, VplSet& set,
+std::vector<uint32_t> makeVisibilityMaps(const reference::SurfaceScene& surfaces, const VplSet& set,
                                          uint32_t side, uint32_t jitter) {
     const size_t texels = size_t(side) * side;
-    std::vector<uint32_t> maps(set.lights.size() * texels, gpu::kVplNothing);
+    const size_t stride = texels + 1;
+    std::vector<uint32_t> maps(set.lights.size() * stride, gpu::kVplNothing);
     std::vector<dvec3> directions(texels);
     for (uint32_t y = 0; y < side; ++y)
         for (uint32_t x = 0; x < side; ++x) {
@@ -42,7 +44,7 @@ std::vector<uint32_t> makeVisibilityMaps(const reference::SurfaceScene& surfaces
     const double lowest = lowestCosine(side);
     tbb::parallel_for(tbb::blocked_range<size_t>(0, set.lights.size(), 1), [&](const auto& range) {
         for (size_t i = range.begin(); i < range.end(); ++i) {
-            gpu::VplData& light = set.lights[i];
+            const gpu::VplData& light = set.lights[i];
             const bool onSurface = light.position.w < 0;
             const dvec3 normal(light.normal);
             const dvec3 origin = set.positions[i] + set.margins[i] * normal;
@@ -53,12 +55,13 @@ std::vector<uint32_t> makeVisibilityMaps(const reference::SurfaceScene& surfaces
                     surfaces.intersect({origin, directions[k]}, 0, reference::kInfinity,
                                        reference::RayKind::Path, reference::mixBits(k));
                 if (!hit.found()) continue;
-                maps[i * texels + k] =
+                maps[i * stride + k] =
                     surfaces.instances()[hit.instance].firstTriangle + hit.triangle;
                 nearest = std::min(nearest, hit.distance);
             }
             // Between two rays there may be something nearer, but not by much.
-            light.power.w = float(std::min(0.5 * nearest, 1e30));
+            maps[i * stride + texels] =
+                std::bit_cast<uint32_t>(float(std::min(0.5 * nearest, 1e30)));
         }
     });
     return maps;

@@ -6,6 +6,7 @@ namespace {
 constexpr const char* kCompensationNames[] = {"clamped", "closed", "traced"};
 constexpr const char* kMarchNames[] = {"full", "half", "quarter", "eighth"};
 
+constexpr const char* kMapsNames[] = {"rays", "points"};
 constexpr const char* kShowNames[] = {"nothing", "lights", "map"};
 
 const SettingDesc kVplSettings[] = {
@@ -20,6 +21,11 @@ const SettingDesc kVplSettings[] = {
         "A point along a ray through media gathers one in so many walks; the points before and behind it gather others."),
     TYNDALL_INT(VplSettings, surfaceClasses, "gi.vpl.surfaceClasses", "Classes on surfaces", "", 1,
                 1024, 1, "A surface gathers one in so many walks, its neighbours others; 1: all."),
+    TYNDALL_ENUM(
+        VplSettings, maps, "gi.vpl.maps", "Visibility maps from", kMapsNames, 0,
+        "What virtual lights see: by rays on the processor, or by points of surfaces that the graphics processor splats."),
+    TYNDALL_INT(VplSettings, points, "gi.vpl.points", "Points of a map", "", 64, 65536, 4096,
+                "Points of surfaces that are splatted into a virtual light's map."),
     TYNDALL_INT(VplSettings, mapSide, "gi.vpl.mapSide", "Visibility map", "texels", 0, 512, 64,
                 "Side of a virtual light's map of what it sees; 0: nothing hides it."),
     TYNDALL_INT(

@@ -8,9 +8,13 @@
 
 namespace tyndall::volumetric_gi {
 
+/// Who makes maps of what virtual lights see: rays on the processor, or points that the graphics processor splats.
+constexpr int32_t kVplMapsOfRays = 0, kVplMapsOfPoints = 1;
+
 struct VplSettings {
     int32_t walks, candidates;
     int32_t classes, surfaceClasses;
+    int32_t maps, points; // maps: kVplMapsOfRays …
     int32_t mapSide, depthSide;
     int32_t samples;
     int32_t compensation;    // kVplClamped and so on

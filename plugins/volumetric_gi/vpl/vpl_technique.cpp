@@ -51,6 +51,9 @@ private:
     std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
+/// Of points that are splatted into maps: lights side by side have different ones, so that their errors differ.
+constexpr uint32_t kPointSets = 8;
+
 /// With which it is found out what lights matter.
 constexpr uint32_t kSeenPoints = 64;
 
@@ -70,9 +73,10 @@ bool converges(const plugin::FrameInputs& inputs) {
 void VplTechnique::makeLights(const plugin::FrameInputs& inputs) {
     const uint32_t generation = converges(inputs) ? inputs.view.data.frameIndex : 0;
     uint64_t order = fg::kHashStart;
-    for (const uint64_t value : {uint64_t(generation), uint64_t(inputs.view.data.seed),
-                                 uint64_t(settings_.walks), uint64_t(settings_.mapSide),
-                                 uint64_t(settings_.fromSurfaces), uint64_t(settings_.fromMedia)})
+    for (const uint64_t value :
+         {uint64_t(generation), uint64_t(inputs.view.data.seed), uint64_t(settings_.walks),
+          uint64_t(settings_.mapSide), uint64_t(settings_.maps), uint64_t(settings_.points),
+          uint64_t(settings_.fromSurfaces), uint64_t(settings_.fromMedia)})
         order = fg::mixHash(order, value);
     // Which lights matter changes with the media: where walks are to be kept, all are.
     const uint32_t candidates = settings_.incremental ? 1 : uint32_t(settings_.candidates);
@@ -99,17 +103,18 @@ void VplTechnique::makeLights(const plugin::FrameInputs& inputs) {
         const Stopwatch watch(times_.choice);
         choose(inputs, what, candidates);
     }
-    const std::vector<gpu::VplData> before = std::move(set_.lights);
     set_ = packWalks(
         scene_.guessed() ? reweighed(walks_, *scene_.scene().media, scene_.media()) : walks_, what);
     const reference::SurfaceScene& surfaces = *scene_.scene().surfaces;
     if (anew) {
         const Stopwatch watch(times_.maps);
         maps_.clear();
-        if (settings_.mapSide > 0 && surfaces.triangleCount() > 0)
+        points_ = {};
+        if (settings_.mapSide > 0 && settings_.maps == kVplMapsOfPoints)
+            points_ = makeSurfacePoints(surfaces, set_.positions, uint32_t(settings_.points),
+                                        kPointSets, generation);
+        else if (settings_.mapSide > 0 && surfaces.triangleCount() > 0)
             maps_ = makeVisibilityMaps(surfaces, set_, uint32_t(settings_.mapSide), generation);
-    } else {
-        for (size_t i = 0; i < before.size(); ++i) set_.lights[i].power.w = before[i].power.w;
     }
     walksKey_ = walksKey;
     lightsKey_ = lightsKey;
@@ -156,7 +161,7 @@ VplGather VplTechnique::gather(const plugin::FrameInputs& inputs) const {
     };
     params.classes = classes(settings_.classes, 2 * double(settings_.samples)); // with compensation
     params.surfaceClasses = classes(settings_.surfaceClasses, 1);
-    params.mapSide = maps_.empty() ? 0 : uint32_t(settings_.mapSide);
+    params.mapSide = maps_.empty() && points_.points.empty() ? 0 : uint32_t(settings_.mapSide);
     params.treeSize = settings_.mapSide > 0 ? uint32_t(scene_.tree().size()) : 0;
     // The bound follows from all lights of an average: what it takes away tends to nothing as frames come.
     const double mean = meanDistance(converges(inputs) ? inputs.view.data.frameIndex + 1 : 1);
@@ -189,8 +194,8 @@ plugin::FrameOutputs VplTechnique::addPasses(fg::FrameGraph& graph,
     makeLights(inputs);
     gather_ = gather(inputs);
     buffers_ = addVplUpload(graph, inputs,
-                            {&set_, &maps_, &scene_.triangles(), &scene_.tree(), lightsKey_,
-                             walksKey_, scene_.surfacesKey()},
+                            {&set_, &maps_, &points_, &scene_.triangles(), &scene_.tree(),
+                             lightsKey_, walksKey_, scene_.surfacesKey()},
                             gather_.params);
     plugin::FrameOutputs outputs;
     if (inputs.terms & kIndirectOnSurfaces)

@@ -33,8 +33,9 @@ private:
     VplSettings settings_{};
     TracedScene scene_;
     VplSet set_;
-    std::vector<uint32_t> maps_;
-    Walks walks_; // through guessed media, where those are
+    std::vector<uint32_t> maps_; // of rays
+    SurfacePoints points_;       // for maps that are splatted
+    Walks walks_;                // through guessed media, where those are
     uint64_t lightsKey_ = 0, walksKey_ = 0;
     uint32_t walksTraced_ = 0; // in this frame
     struct {

@@ -29,8 +29,7 @@ vec3 mapOf(uint light, ivec2 pixel, vec3 picture) {
     float side = 0.5 * view.size.y;
     vec2 at = vec2(pixel) / side;
     if (vpl.mapSide == 0u || light >= vpl.lightCount || any(greaterThanEqual(at, vec2(1.0)))) return picture;
-    uvec2 texel = uvec2(at * float(vpl.mapSide));
-    uint id = vplMaps[(light * vpl.mapSide + texel.y) * vpl.mapSide + texel.x];
+    uint id = vplTriangleAt(light, ivec2(at * float(vpl.mapSide)));
     if (id == kVplNothing) return vec3(0.0);
     return show.white * (0.5 + 0.5 * vplTriangles[id].plane.xyz);
 }

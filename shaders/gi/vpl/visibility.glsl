@@ -3,8 +3,9 @@
 #ifndef TYNDALL_GI_VPL_VISIBILITY
 #define TYNDALL_GI_VPL_VISIBILITY
 #include "gi/vpl/lights.glsl"
+#include "gi/vpl/map_texel.glsl"
 
-layout(std430) readonly buffer VplMaps { uint vplMaps[]; }; // for each light mapSide² numbers of triangles, by direction
+layout(std430) readonly buffer VplMaps { uint vplMaps[]; };
 layout(std430) readonly buffer VplTriangles { VplTriangle vplTriangles[]; };
 layout(std430) readonly buffer VplTree { VplTreeNode vplTree[]; };
 
@@ -60,18 +61,12 @@ bool triangleBetween(vec3 from, vec3 to) {
     return false;
 }
 
-/// Over an edge of the square an octahedron's map goes on turned about the edge's middle.
-uint vplTriangleAt(uint light, ivec2 texel) {
-    int side = int(vpl.mapSide);
-    if (texel.x < 0 || texel.x >= side) texel = ivec2(texel.x < 0 ? 0 : side - 1, side - 1 - texel.y);
-    if (texel.y < 0 || texel.y >= side) texel = ivec2(side - 1 - texel.x, texel.y < 0 ? 0 : side - 1);
-    return vplMaps[(light * vpl.mapSide + uint(texel.y)) * vpl.mapSide + uint(texel.x)];
-}
+uint vplTriangleAt(uint light, ivec2 texel) { return vplMaps[vplMapStart(light) + vplTexelAt(texel)]; }
 
 /// Does the light see the point? `direction`: unit, from the light. The four texels around the direction are looked at: what has an outline within
 /// one of them is seen by another. A triangle there that lies between settles it, and so does it if the point lies behind none.
 bool vplSees(uint light, vec3 position, vec3 direction, float distance) {
-    if (vpl.mapSide == 0u || distance < vplLights[light].power.w) return true;
+    if (vpl.mapSide == 0u || distance < uintBitsToFloat(vplMaps[vplNearestAt(light)])) return true;
     float side = float(vpl.mapSide);
     vec2 at = clamp((octahedralEncode(direction) * 0.5 + 0.5) * side, vec2(0.0), vec2(side - 0.5));
     ivec2 texel = ivec2(at);
