@@ -36,6 +36,7 @@ struct CompareOptions {
     std::string terms, layer, toneCurve = "agx", json, heatMap, heatMapMetric;
     double heatMapMax = 1;
     std::optional<double> ev100;
+    bool reduce = false;
     std::vector<Threshold> thresholds = compareThresholds();
 };
 
@@ -196,10 +197,13 @@ Outcome runCompare(const CompareOptions& options, const GlobalOptions& global) {
         return wrongInput(checked.message());
     const Result<ComparedPart> part = parsePart(options);
     if (!part.ok()) return wrongInput(part.message());
-    const Result<ComparedImage> image = readCompared(options.image, *part);
+    Result<ComparedImage> image = readCompared(options.image, *part);
     if (!image.ok()) return wrongInput(image.message());
     const Result<ComparedImage> reference = readCompared(options.reference, *part);
     if (!reference.ok()) return wrongInput(reference.message());
+    if (options.reduce)
+        if (const Result<void> reduced = reduceTo(*reference, *image); !reduced.ok())
+            return wrongInput(reduced.message());
     if (const Result<void> pair = checkPair(*image, *reference); !pair.ok())
         return wrongInput(pair.message());
     const Result<std::string> heatMapMetric = parseHeatMapMetric(options, *image, *part);
@@ -236,6 +240,8 @@ void addOptions(CLI::App& command, CompareOptions& options) {
     command.add_option("--layer", options.layer, "Compare this layer instead of the picture")
         ->type_name("NAME")
         ->excludes(terms);
+    command.add_flag("--reduce", options.reduce,
+                     "A is so many times as large as B: compare averages of its pixels");
     command
         .add_option("--ev100", options.ev100,
                     "Exposure for psnr, ssim and flip (as in B's metadata, else A's, else 0)")

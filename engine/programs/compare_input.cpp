@@ -140,8 +140,8 @@ void addVariance(ComparedImage& to, const fs::path& path, const ExrFile& file,
     const ImageLayer* variance = findLayer(file, "variance");
     // A reference of just these terms: their sum is its picture.
     const auto traced = file.metadata.find("tyndall.terms");
-    const bool allOfIt = part.terms != 0 && traced != file.metadata.end() &&
-                         traced->second == termNames(part.terms);
+    const bool allOfIt =
+        part.terms != 0 && traced != file.metadata.end() && traced->second == termNames(part.terms);
     if (!allOfIt && (part.terms != 0 || !isPicture(part.layer)))
         to.whyNoVariance =
             "the layer 'variance' is that of the whole picture, not of " + part.text();
@@ -205,6 +205,33 @@ Result<ComparedImage> readCompared(const fs::path& path, const ComparedPart& par
                                          : readWithoutLayers(path, part, extension == ".png");
     if (compared.ok()) compared->file = path.string();
     return compared;
+}
+
+Result<void> reduceTo(const ComparedImage& reference, ComparedImage& image) {
+    const Image &wide = image.image, &narrow = reference.image;
+    const int factor = narrow.width > 0 ? wide.width / narrow.width : 0;
+    if (factor < 1 || wide.width != factor * narrow.width || wide.height != factor * narrow.height)
+        return Error{fmt::format(
+            "--reduce: '{}' is {}x{} pixels, which is no multiple of the {}x{} of '{}'", image.file,
+            wide.width, wide.height, narrow.width, narrow.height, reference.file)};
+    if (image.displayReferred)
+        return Error{fmt::format(
+            "--reduce: '{}' is a PNG, whose values are not light that could be averaged",
+            image.file)};
+    Image averages(narrow.width, narrow.height, wide.channels);
+    const double share = 1.0 / (double(factor) * double(factor));
+    for (int y = 0; y < narrow.height; ++y)
+        for (int x = 0; x < narrow.width; ++x)
+            for (int c = 0; c < wide.channels; ++c) {
+                double sum = 0;
+                for (int k = 0; k < factor * factor; ++k)
+                    sum += double(wide.at(x * factor + k % factor, y * factor + k / factor)[c]);
+                averages.at(x, y)[c] = float(sum * share);
+            }
+    image.image = std::move(averages);
+    image.variance.reset();
+    image.whyNoVariance = "it was reduced";
+    return {};
 }
 
 } // namespace tyndall

@@ -38,4 +38,8 @@ struct ComparedImage {
 /// tells what is).
 Result<ComparedImage> readCompared(const std::filesystem::path& path, const ComparedPart& part);
 
+/// Averages of squares of pixels, so that the image becomes as large as `reference`. Errors: it is not so many times as large in both directions; a PNG,
+/// whose values cannot be averaged.
+Result<void> reduceTo(const ComparedImage& reference, ComparedImage& image);
+
 } // namespace tyndall

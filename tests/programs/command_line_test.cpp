@@ -56,10 +56,11 @@ TEST(CommandLine, CaptureHelpHasEveryOptionOfTheInterface) {
 TEST(CommandLine, CompareHelpHasEveryOption) {
     const std::string help = tyndall({"compare", "--help"}).out;
     for (const char* option :
-         {"--terms", "--layer", "--ev100", "--tone-curve", "--json", "--heatmap ",
-          "--heatmap-metric", "--heatmap-max", "--max-rmse", "--max-relmse ",
-          "--max-relmse-trimmed", "--max-mrse", "--max-smape", "--max-p999", "--max-energy-error",
-          "--min-psnr", "--min-ssim", "--max-flip", "--quiet"})
+         {"--terms",    "--layer",     "--ev100",          "--tone-curve",
+          "--json",     "--heatmap ",  "--heatmap-metric", "--heatmap-max",
+          "--reduce",   "--max-rmse",  "--max-relmse ",    "--max-relmse-trimmed",
+          "--max-mrse", "--max-smape", "--max-p999",       "--max-energy-error",
+          "--min-psnr", "--min-ssim",  "--max-flip",       "--quiet"})
         EXPECT_THAT(help, HasSubstr(option));
 }
 

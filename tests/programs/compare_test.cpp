@@ -49,6 +49,15 @@ struct CompareTest : ::testing::Test {
         EXPECT_EQ(result.out + result.err, "") << "quiet is quiet";
         return json::parse(readFile(options.folder / "r.json").value());
     }
+    /// 32x24 pixels whose averages of 2x2 are those of a.exr.
+    void writeTwiceAsLarge(const std::string& name) const {
+        Image large(32, 24, 3);
+        for (int y = 0; y < 24; ++y)
+            for (int x = 0; x < 32; ++x)
+                for (int c = 0; c < 3; ++c)
+                    large.at(x, y)[c] = float((c == 2 ? 1 : 2) * (x % 2 + 2 * (y % 2)) / 1.5);
+        write(name, {{"", large}});
+    }
     void expectRefused(const std::vector<std::string>& arguments, const std::string& sentence) {
         const ProcessResult result = compare(arguments);
         EXPECT_EQ(result.status, 2) << sentence << ": " << result.err;
@@ -76,6 +85,19 @@ TEST_F(CompareTest, MetricsHaveTheValuesWorkedOutByHand) {
         EXPECT_NEAR(m.at(name).get<double>(), value, 1e-9) << name;
     for (const char* name : {"psnr", "ssim", "flip"}) EXPECT_TRUE(m.at(name).is_number()) << name;
     EXPECT_TRUE(m.at("reference_floor").is_null());
+}
+
+TEST_F(CompareTest, AveragesOfALargerImageAreCompared) {
+    writeTwiceAsLarge("large.exr");
+    const json m = report({"large.exr", "b.exr", "--reduce"}).at("metrics");
+    EXPECT_NEAR(m.at("relmse").get<double>(), (1 / 1.04 + 4 / 9.04) / 3, 1e-6);
+    EXPECT_NEAR(m.at("energy").get<double>(), 5.0 / 6, 1e-6);
+    EXPECT_EQ(report({"a.exr", "b.exr", "--reduce"}).at("metrics").at("rmse"),
+              report({"a.exr", "b.exr"}).at("metrics").at("rmse"));
+    expectRefused({"large.exr", "b.exr"}, "they must be of one size");
+    expectRefused({"b.exr", "large.exr", "--reduce"}, "no multiple of the 32x24");
+    write("odd.exr", {{"", Image(32, 12, 3)}});
+    expectRefused({"odd.exr", "b.exr", "--reduce"}, "no multiple of the 16x12");
 }
 
 TEST_F(CompareTest, ItPrintsEveryMetricOfTheInterfaceInATable) {
