@@ -12,47 +12,95 @@ dvec3 uniformDirection(const dvec2& u) { return directionAround(1 - 2 * u.x, u.y
 /// Of light from infinity, so much goes to the content, where that is smaller than all there is.
 constexpr double kToContent = 0.9;
 
+/// Of the faces of a box that `direction` goes in by, those across x, y and z: their areas as the direction sees them, m².
+dvec3 shadowOfFaces(const Bounds& box, const dvec3& direction) {
+    if (box.empty()) return dvec3(0);
+    const dvec3 e = box.extent();
+    return glm::abs(direction) * dvec3(e.y * e.z, e.z * e.x, e.x * e.y);
+}
+
+double sumOf(const dvec3& v) { return v.x + v.y + v.z; }
+
+/// The mean over all directions of the shadow of a box: a quarter of its surface (Cauchy).
+double meanShadow(const Bounds& box) { return 0.5 * sumOf(shadowOfFaces(box, dvec3(1))); }
+
+/// Evenly on the shadow that a box casts along a direction: a point of a face that the direction goes in by.
+dvec3 pointOnShadow(const Bounds& box, const dvec3& direction, const dvec2& u) {
+    const dvec3 shadow = shadowOfFaces(box, direction);
+    double target = u.x * sumOf(shadow);
+    int face = 0;
+    while (face < 2 && !(target < shadow[face])) target -= shadow[face++];
+    while (face > 0 && !(shadow[face] > 0)) --face; // never one that is seen from its edge
+    const int one = (face + 1) % 3, other = (face + 2) % 3;
+    const double part = shadow[face] > 0 ? std::min(target / shadow[face], 1.0) : 0.5;
+    dvec3 point = box.minimum;
+    point[face] = direction[face] > 0 ? box.minimum[face] : box.maximum[face];
+    point[one] += part * box.extent()[one];
+    point[other] += u.y * box.extent()[other];
+    return point;
+}
+
+/// Does the line through a point meet the box?
+bool onShadow(const Bounds& box, const dvec3& point, const dvec3& direction) {
+    if (box.empty()) return false;
+    double enter = -kInfinity, leave = kInfinity;
+    for (int axis = 0; axis < 3; ++axis) {
+        double low = box.minimum[axis] - point[axis], high = box.maximum[axis] - point[axis];
+        if (direction[axis] == 0) {
+            if (low > 0 || high < 0) return false;
+            continue;
+        }
+        low /= direction[axis];
+        high /= direction[axis];
+        enter = std::max(enter, std::min(low, high));
+        leave = std::min(leave, std::max(low, high));
+    }
+    return enter <= leave;
+}
+
 } // namespace
 
 LightEmission::LightEmission(const TracerScene& scene, const Bounds& content) : scene_(scene) {
-    Bounds bounds = scene.surfaces->bounds();
-    for (const MediumSource& medium : scene.media->media()) bounds.include(medium.bounds());
-    const auto ballAround = [](const Bounds& box) {
-        return box.empty() ? Ball{} : Ball{box.centre(), 0.5 * glm::length(box.extent())};
-    };
-    whole_ = ballAround(bounds);
-    content_ = content.empty() ? whole_ : ballAround(content);
+    whole_ = scene.surfaces->bounds();
+    bool endless = false;
+    for (const MediumSource& medium : scene.media->media()) {
+        whole_.include(medium.bounds());
+        endless |= medium.endless();
+    }
+    content_ = content.empty() ? whole_ : content;
+    if (endless && !whole_.empty()) {
+        const dvec3 half(0.5 * glm::length(whole_.extent()));
+        whole_ = {whole_.centre() - half, whole_.centre() + half};
+    }
     const Lights& lights = *scene.lights;
     const auto add = [this](double power) { sums_.push_back(sums_.back() + std::max(0.0, power)); };
-    for (const LightSource& lamp : lights.lamps()) add(lamp.power(content_.discArea()));
+    for (const LightSource& lamp : lights.lamps()) add(lamp.power(meanShadow(content_)));
     add(lights.emittedPower());
     add(lights.environment().black()
             ? 0
-            : 4 * kPi * lights.environment().meanLuminance() * content_.discArea());
+            : 4 * kPi * lights.environment().meanLuminance() * meanShadow(content_));
     add(lights.glow().black() ? 0 : 4 * kPi * lights.glow().intensity());
 }
 
-bool LightEmission::Ball::inDisc(const dvec3& position, const dvec3& direction) const {
-    const dvec3 off = position - centre;
-    const dvec3 across = off - glm::dot(off, direction) * direction;
-    return glm::dot(across, across) <= radius * radius;
-}
-
-/// From a disc across `direction` outside of the ball around everything.
+/// From outside of the ball around everything.
 Ray LightEmission::fromInfinity(const dvec3& direction, double choice, const dvec2& u,
                                 double& area) const {
-    const bool aimed = content_.radius < whole_.radius;
-    const Ball& ball = aimed && choice < kToContent ? content_ : whole_;
-    const double r = ball.radius * std::sqrt(u.x), angle = 2 * kPi * u.y;
-    dvec3 position =
-        ball.centre + Frame(direction).toWorld({r * std::cos(angle), r * std::sin(angle), 0});
+    area = 0;
+    if (whole_.empty()) return {dvec3(0), direction};
+    const double contentArea = sumOf(shadowOfFaces(content_, direction)),
+                 wholeArea = sumOf(shadowOfFaces(whole_, direction));
+    const double toContent = contentArea > 0 && contentArea < wholeArea ? kToContent : 0.0;
+    const bool aimed = choice < toContent;
+    dvec3 position = pointOnShadow(aimed ? content_ : whole_, direction, u);
     double density = 0;
-    for (const auto& [part, of] : {std::pair{aimed ? kToContent : 0.0, &content_},
-                                   std::pair{aimed ? 1 - kToContent : 1.0, &whole_}})
-        if (part > 0 && of->radius > 0 && of->inDisc(position, direction))
-            density += part / of->discArea();
+    // A point of a box's face is on that box's shadow, however it was rounded.
+    if (toContent > 0 && (aimed || onShadow(content_, position, direction)))
+        density += toContent / contentArea;
+    if (wholeArea > 0 && (!aimed || onShadow(whole_, position, direction)))
+        density += (1 - toContent) / wholeArea;
     area = density > 0 ? 1 / density : 0;
-    position -= (glm::dot(position - whole_.centre, direction) + whole_.radius) * direction;
+    const double radius = 0.5 * glm::length(whole_.extent());
+    position -= (glm::dot(position - whole_.centre(), direction) + radius) * direction;
     return {position, direction};
 }
 
@@ -73,7 +121,7 @@ EmittedRay LightEmission::sample(Sampler& sampler) const {
         if (lamp.local()) {
             out = lamp.emit(where, way);
         } else {
-            const LightSample sun = lamp.sample(whole_.centre, way);
+            const LightSample sun = lamp.sample(whole_.empty() ? dvec3(0) : whole_.centre(), way);
             out.ray = fromInfinity(-sun.direction, choice.y, where, area);
             if (sun.density > 0) out.power = sun.radiance * (area / sun.density);
             out.distant = true;

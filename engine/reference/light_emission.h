@@ -7,8 +7,8 @@
 
 namespace tyndall::reference {
 
-/// All lights of a scene as sources of rays. Light from infinity starts on a disc that the ball around all surfaces and all media with an
-/// end fits behind: what it does in endless fog outside of that ball is left out, but for what the fog takes away before.
+/// All lights of a scene as sources of rays. Light from infinity goes through the box around all surfaces and all media with an end. Where there is endless
+/// fog that box is as large as the ball around it, whatever the direction; what the fog outside of it scatters is left out, but not what it takes away.
 class LightEmission {
 public:
     /// `scene` must outlive it. `content`: where most of light from infinity is to be aimed; empty: everywhere alike.
@@ -20,18 +20,12 @@ public:
     [[nodiscard]] EmittedRay sample(Sampler& sampler) const;
 
 private:
-    struct Ball {
-        dvec3 centre{0};
-        double radius = 0; // metres
-        [[nodiscard]] double discArea() const { return kPi * radius * radius; }
-        [[nodiscard]] bool inDisc(const dvec3& position, const dvec3& direction) const;
-    };
     /// `area`: 1/density of the ray among those of this direction, m².
     [[nodiscard]] Ray fromInfinity(const dvec3& direction, double choice, const dvec2& u,
                                    double& area) const;
 
     const TracerScene& scene_;
-    Ball whole_, content_;          // around everything, and around what most rays are to meet
+    Bounds whole_, content_;        // around everything, and around what most rays are to meet
     std::vector<double> sums_{0.0}; // cumulative power, as Lights counts them
 };
 
