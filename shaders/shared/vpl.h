@@ -66,17 +66,21 @@ struct VplParams {
     uint samples;     // points at which a ray through media gathers
     uint mediaInView; // 0: the picture is seen through none
     uint treeSize;    // nodes; 0: nothing is hidden
-    uint padding;
+    uint lost;        // 1: lights give what the bound takes away from them, and nothing else
 };
 
 struct VplShowParams {
-    uint what;    // kVplShowLights or kVplShowMap
+    uint what;    // kVplShowLights and so on
     uint light;   // whose map
     float radius; // of a ball, metres
     float white;  // nits
+    uint hasTransmittance, hasSurfaces, hasMedia; // 0: there is no such texture
+    uint padding;
 };
 TYNDALL_CONST uint kVplShowLights = 1u;
 TYNDALL_CONST uint kVplShowMap = 2u;
+TYNDALL_CONST uint kVplShowAtlas = 3u;
+TYNDALL_CONST uint kVplShowLost = 4u;
 
 TYNDALL_CONST uint kVplClamped = 0u;    // what the bound takes away is missing
 TYNDALL_CONST uint kVplClosedForm = 1u; // as if light were the same all around

@@ -35,7 +35,7 @@ class VplBench(Bench):
         """relmse that the reference itself has: half of that between it and one of other random numbers."""
         again = scene.with_name(scene.name.replace(".scene.json", ".again.exr"))
         if not again.exists():
-            self.run("reference", scene, "-o", again, "--size", SIZE, "--spp", max(self.spp // fewer, 16), "--seed", 1, "--terms", f"{SURFACES},{MEDIA}", "--quiet")
+            self.run("reference", scene, "-o", again, "--size", SIZE, "--spp", max(int(self.spp / fewer), 16), "--seed", 1, "--terms", f"{SURFACES},{MEDIA}", "--quiet")
         return lambda terms: f"{self.compare(again, reference, terms)[0] / 2:.3f}"
 
 

@@ -7,11 +7,11 @@ constexpr const char* kCompensationNames[] = {"clamped", "closed", "traced"};
 constexpr const char* kMarchNames[] = {"full", "half", "quarter", "eighth"};
 
 constexpr const char* kMapsNames[] = {"rays", "points"};
-constexpr const char* kShowNames[] = {"nothing", "lights", "map"};
+constexpr const char* kShowNames[] = {"nothing", "lights", "map", "atlas", "lost"};
 
 const SettingDesc kVplSettings[] = {
     TYNDALL_INT(
-        VplSettings, walks, "gi.vpl.walks", "Walks", "", 1, 65536, 256,
+        VplSettings, walks, "gi.vpl.walks", "Walks", "", 1, 65536, 512,
         "Random walks from the lights; each leaves a virtual light wherever it is scattered."),
     TYNDALL_INT(
         VplSettings, candidates, "gi.vpl.candidates", "Walks to choose from", "", 1, 64, 1,
@@ -66,7 +66,7 @@ const SettingDesc kVplSettings[] = {
         "Walks and maps stay while nothing but media changes a little: only what walks carry is told anew. Noisier where media are uneven."),
     TYNDALL_ENUM(
         VplSettings, show, "gi.vpl.show", "Show", kShowNames, 0,
-        "The virtual lights in the picture, green on surfaces and red in media, or the map of what one of them sees."),
+        "In the picture the virtual lights, green on surfaces and red in media, or the map of what one of them or all of them see; or nothing but the light that the bound takes away."),
     TYNDALL_INT(VplSettings, showLight, "gi.vpl.showLight", "Light shown", "", 0, 1000000, 0,
                 "Number of the virtual light whose map is shown."),
 };
@@ -80,6 +80,10 @@ constexpr PresetEntry kVplPresets[] = {
     {Quality::Medium, "gi.vpl.surfaces.resolution", "half"},
     {Quality::High, "gi.vpl.surfaces.resolution", "half"},
     {Quality::Ultra, "gi.vpl.surfaces.resolution", "full"},
+    {Quality::Low, "gi.vpl.depthSide", "16"},
+    {Quality::Medium, "gi.vpl.depthSide", "16"},
+    {Quality::High, "gi.vpl.depthSide", "16"},
+    {Quality::Ultra, "gi.vpl.depthSide", "32"},
     {Quality::Low, "gi.vpl.walks", "64"},
     {Quality::Low, "gi.vpl.candidates", "1"},
     {Quality::Low, "gi.vpl.classes", "16"},
@@ -90,7 +94,7 @@ constexpr PresetEntry kVplPresets[] = {
     {Quality::Medium, "gi.vpl.classes", "8"},
     {Quality::Medium, "gi.vpl.mapSide", "24"},
     {Quality::Medium, "gi.vpl.march", "half"},
-    {Quality::High, "gi.vpl.walks", "256"},
+    {Quality::High, "gi.vpl.walks", "512"},
     {Quality::High, "gi.vpl.candidates", "1"},
     {Quality::High, "gi.vpl.classes", "8"},
     {Quality::High, "gi.vpl.mapSide", "32"},

@@ -8,7 +8,6 @@
 #include "framegraph/hash.h"
 #include "volumetric_gi/vpl/vpl_choice.h"
 #include "volumetric_gi/vpl/vpl_maps.h"
-#include "volumetric_gi/vpl/vpl_show.h"
 
 namespace tyndall::volumetric_gi {
 namespace {
@@ -169,7 +168,8 @@ VplGather VplTechnique::gather(const plugin::FrameInputs& inputs) const {
     params.clampSquared = squared(mean * double(settings_.clamp));
     params.surfaceClampSquared = squared(mean * double(settings_.surfaceClamp));
     params.leastRoughness = settings_.roughness;
-    params.compensation = uint32_t(settings_.compensation);
+    params.lost = settings_.show == int32_t(gpu::kVplShowLost) ? 1 : 0;
+    params.compensation = params.lost != 0 ? gpu::kVplClamped : uint32_t(settings_.compensation);
     params.lightsOfScene = inputs.lights.lightCount;
     params.relaxed = settings_.relaxed;
     params.samples = uint32_t(settings_.samples);
@@ -202,6 +202,7 @@ plugin::FrameOutputs VplTechnique::addPasses(fg::FrameGraph& graph,
         outputs.surfaceRadiance = addVplSurfaces(graph, inputs, buffers_, gather_);
     if (inputs.terms & ~kIndirectOnSurfaces)
         outputs.inScatter = addVplMedia(graph, inputs, buffers_, gather_);
+    gathered_ = {outputs.surfaceRadiance, outputs.inScatter};
     if (inputs.statistics) {
         outputs.statistics = addStatistics(graph);
         outputs.statistic = kStatistics;
@@ -242,8 +243,9 @@ fg::TextureHandle VplTechnique::addPostPasses(fg::FrameGraph& graph,
                                               fg::TextureHandle color) {
     const float radius = settings_.show == 0 ? 0.0f : float(kBall * meanDistance(1));
     const fg::TextureHandle shown =
-        addVplShow(graph, inputs, settings_, buffers_, gather_.params, radius, color);
+        addVplShow(graph, inputs, settings_, buffers_, gather_.params, radius, gathered_, color);
     buffers_ = {}; // of this frame alone
+    gathered_ = {};
     return shown;
 }
 

@@ -9,6 +9,7 @@
 #include "volumetric_gi/vpl/traced_scene.h"
 #include "volumetric_gi/vpl/vpl_gather.h"
 #include "volumetric_gi/vpl/vpl_settings.h"
+#include "volumetric_gi/vpl/vpl_show.h"
 
 namespace tyndall::volumetric_gi {
 
@@ -44,6 +45,7 @@ private:
     std::string said_;
     VplBuffers buffers_; // of this frame
     VplGather gather_;
+    VplGathered gathered_;
     std::array<float, 7> statistics_{};
 };
 

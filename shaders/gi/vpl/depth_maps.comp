@@ -2,7 +2,7 @@
 #include "common/octahedral.glsl"
 #include "media/optical_depth.glsl"
 #include "shared/vpl.h"
-#include "gi/vpl/depth_reach.glsl"
+#include "gi/vpl/depth_map.glsl"
 
 layout(local_size_x = 64) in;
 
@@ -14,15 +14,16 @@ void main() {
     uint texel = gl_GlobalInvocationID.x;
     uint light = gl_GlobalInvocationID.y;
     if (texel >= vpl.depthSide * vpl.depthSide || light >= vpl.lightCount) return;
-    vec2 square = (vec2(texel % vpl.depthSide, texel / vpl.depthSide) + 0.5) / float(vpl.depthSide) * 2.0 - 1.0;
-    vec3 direction = octahedralDecode(square);
     vec3 position = vplLights[light].position.xyz;
-    float reach = vplDepthReach(position, vpl);
+    vec2 place = (vec2(texel % vpl.depthSide, texel / vpl.depthSide) + 0.5) / float(vpl.depthSide);
+    vec3 direction = vplDepthDirection(position, place, vpl);
+    vec2 range = vplDepthRange(position, vpl);
+    float width = (range.y - range.x) / float(kVplDepthSteps);
     vec3 depth = vec3(0.0);
     uint first = (light * vpl.depthSide * vpl.depthSide + texel) * kVplDepthSteps;
     for (uint step = 0u; step < kVplDepthSteps; ++step) {
-        float width = reach / float(kVplDepthSteps);
-        depth += gridOpticalDepth(position, direction, float(step) * width, float(step + 1u) * width);
+        float start = range.x + float(step) * width;
+        depth += gridOpticalDepth(position, direction, start, start + width);
         vec3 stored = min(depth, vec3(6e4)); // of half precision
         vplDepths[first + step] = uvec2(packHalf2x16(stored.rg), packHalf2x16(vec2(stored.b, 0.0)));
     }

@@ -33,7 +33,7 @@ void addLightFrom(inout SurfaceLight sum, uint light, Receiver r) {
     if (!(maximumOf(intensity) > 0.0) || !vplSees(light, r.position, -direction, distance)) return;
     bool onSurface = vplLights[light].position.w < 0.0;
     float cosines = facing * (onSurface ? dot(vplLights[light].normal.xyz, -direction) : 1.0);
-    vec3 irradiance = intensity * (cosine * heldInverseSquare(squared, cosines, onSurface ? vpl.surfaceClampSquared : vpl.clampSquared));
+    vec3 irradiance = intensity * (cosine * vplInverseSquare(squared, cosines, onSurface ? vpl.surfaceClampSquared : vpl.clampSquared));
 #if MEDIA
     irradiance *= exp(-vplOpticalDepth(light, r.position, direction, distance));
 #endif

@@ -12,6 +12,14 @@ layout(std430) readonly buffer VplLights { VplData vplLights[]; };
 layout(std430) readonly buffer VplWalks { uint vplWalks[]; };   // where each walk's lights begin; one more: where the last ends
 layout(std430) readonly buffer VplDepths { uvec2 vplDepths[]; }; // the grids' optical depth, rgb in half precision, by light, direction, distance
 
+const float kMostLost = 1e4; // over the bound: what is lost at a light itself has no end
+
+/// heldInverseSquare(), or what it takes away, where that is to be looked at.
+float vplInverseSquare(float squared, float cosines, float clampSquared) {
+    float held = heldInverseSquare(squared, cosines, clampSquared);
+    return vpl.lost == 0u ? held : min(1.0 / max(squared, 1e-30), kMostLost * held) - held;
+}
+
 /// Watts per steradian towards `direction` (unit); on a surface with the cosine there.
 vec3 vplIntensity(uint light, vec3 direction) {
     float kind = vplLights[light].position.w;

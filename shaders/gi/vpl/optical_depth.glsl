@@ -1,9 +1,9 @@
-// Optical depth between a virtual light and a point: of grids from the light's own map, octahedral in direction and in equal steps of distance;
+// Optical depth between a virtual light and a point: of grids from the light's own map, by direction and in equal steps of distance;
 // of other media in closed form.
 #ifndef TYNDALL_GI_VPL_OPTICAL_DEPTH
 #define TYNDALL_GI_VPL_OPTICAL_DEPTH
 #include "gi/vpl/lights.glsl"
-#include "gi/vpl/depth_reach.glsl"
+#include "gi/vpl/depth_map.glsl"
 #include "media/optical_depth.glsl"
 
 vec3 vplDepthAt(uint column, uint step) {
@@ -15,10 +15,11 @@ vec3 vplDepthAt(uint column, uint step) {
 /// `direction`: unit, from the light.
 vec3 vplGridDepth(uint light, vec3 direction, float distance) {
     float side = float(vpl.depthSide);
-    float along = clamp(distance / vplDepthReach(vplLights[light].position.xyz, vpl), 0.0, 1.0) * float(kVplDepthSteps);
+    vec2 range = vplDepthRange(vplLights[light].position.xyz, vpl);
+    float along = clamp((distance - range.x) / (range.y - range.x), 0.0, 1.0) * float(kVplDepthSteps);
     uint step = min(uint(along), kVplDepthSteps - 1u);
     float part = along - float(step);
-    vec2 at = clamp((octahedralEncode(direction) * 0.5 + 0.5) * side - 0.5, vec2(0.0), vec2(side - 1.0));
+    vec2 at = clamp(vplDepthPlace(vplLights[light].position.xyz, direction, vpl) * side - 0.5, vec2(0.0), vec2(side - 1.0));
     uvec2 low = uvec2(at);
     uvec2 high = min(low + 1u, uvec2(vpl.depthSide - 1u));
     vec2 f = at - vec2(low);

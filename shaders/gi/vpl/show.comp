@@ -1,4 +1,5 @@
-// Virtual lights in the finished picture: as balls, green on surfaces and red in media; or what one of them sees, a colour for each triangle's normal.
+// Virtual lights in the finished picture: as balls, green on surfaces and red in media; what one of them or all of them see, a colour for each triangle's
+// normal; or, in the picture's place, the light that the bound takes away.
 #include "gi/vpl/visibility.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
@@ -6,6 +7,9 @@ layout(local_size_x = 8, local_size_y = 8) in;
 layout(std140) uniform Show { VplShowParams show; };
 uniform sampler2D depth;
 uniform sampler2D color;
+uniform sampler2D transmittance;
+uniform sampler2D lostOnSurfaces;
+uniform sampler2D lostInMedia;
 layout(rgba32f) writeonly uniform image2D shown;
 
 vec3 balls(Ray ray, float distance, vec3 picture) {
@@ -24,14 +28,35 @@ vec3 balls(Ray ray, float distance, vec3 picture) {
     return picture;
 }
 
-/// The map in the lower left corner, half as high as the picture.
-vec3 mapOf(uint light, ivec2 pixel, vec3 picture) {
-    float side = 0.5 * view.size.y;
-    vec2 at = vec2(pixel) / side;
-    if (vpl.mapSide == 0u || light >= vpl.lightCount || any(greaterThanEqual(at, vec2(1.0)))) return picture;
+/// `at`: in the map, [0,1)².
+vec3 mapAt(uint light, vec2 at) {
     uint id = vplTriangleAt(light, ivec2(at * float(vpl.mapSide)));
     if (id == kVplNothing) return vec3(0.0);
     return show.white * (0.5 + 0.5 * vplTriangles[id].plane.xyz);
+}
+
+/// The map in the lower left corner, half as high as the picture.
+vec3 mapOf(uint light, ivec2 pixel, vec3 picture) {
+    vec2 at = vec2(pixel) / (0.5 * view.size.y);
+    if (vpl.mapSide == 0u || light >= vpl.lightCount || any(greaterThanEqual(at, vec2(1.0)))) return picture;
+    return mapAt(light, at);
+}
+
+/// All maps, row by row from the lower left corner, as large as they fit in.
+vec3 atlas(ivec2 pixel, vec3 picture) {
+    if (vpl.mapSide == 0u || vpl.lightCount == 0u) return picture;
+    float columns = ceil(sqrt(float(vpl.lightCount) * view.size.x / view.size.y));
+    vec2 at = vec2(pixel) * columns / view.size.x;
+    uint light = uint(at.y) * uint(columns) + uint(at.x);
+    return light < vpl.lightCount ? mapAt(light, fract(at)) : picture;
+}
+
+vec3 lost(ivec2 pixel) {
+    vec3 sum = vec3(0.0);
+    if (show.hasSurfaces != 0u) sum = texelFetch(lostOnSurfaces, pixel, 0).rgb;
+    if (show.hasTransmittance != 0u) sum *= texelFetch(transmittance, pixel, 0).rgb;
+    if (show.hasMedia != 0u) sum += texelFetch(lostInMedia, pixel, 0).rgb;
+    return sum;
 }
 
 void main() {
@@ -40,6 +65,9 @@ void main() {
     vec2 centre = vec2(pixel) + 0.5;
     vec3 picture = texelFetch(color, pixel, 0).rgb;
     float distance = rayDistanceFromDepth(centre, texelFetch(depth, pixel, 0).r);
-    picture = show.what == kVplShowLights ? balls(cameraRay(centre), distance, picture) : mapOf(show.light, pixel, picture);
+    if (show.what == kVplShowLights) picture = balls(cameraRay(centre), distance, picture);
+    if (show.what == kVplShowMap) picture = mapOf(show.light, pixel, picture);
+    if (show.what == kVplShowAtlas) picture = atlas(pixel, picture);
+    if (show.what == kVplShowLost) picture = lost(pixel);
     imageStore(shown, pixel, vec4(picture, 1.0));
 }
