@@ -49,6 +49,9 @@ struct Bounds {
         minimum = glm::min(minimum, b.minimum);
         maximum = glm::max(maximum, b.maximum);
     }
+    [[nodiscard]] bool contains(const dvec3& p) const {
+        return glm::all(glm::lessThanEqual(minimum, p)) && glm::all(glm::lessThanEqual(p, maximum));
+    }
     [[nodiscard]] dvec3 centre() const { return 0.5 * (minimum + maximum); }
     [[nodiscard]] dvec3 extent() const { return maximum - minimum; }
     /// The box around this box's eight corners after `transform`.

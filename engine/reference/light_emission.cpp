@@ -9,8 +9,27 @@ namespace {
 
 dvec3 uniformDirection(const dvec2& u) { return directionAround(1 - 2 * u.x, u.y); }
 
-/// Of light from infinity, so much goes to the content, where that is smaller than all there is.
-constexpr double kToContent = 0.9;
+/// Of light from infinity, so much goes to the content, where that is smaller than all there is; the rest to boxes around it, each so many times as wide.
+constexpr double kToContent = 0.7;
+constexpr double kWider = 4;
+constexpr size_t kMostBoxes = 16;
+
+/// Of those the last is around everything: rays per area fall off with the squared distance from the content, as what light gives there does.
+std::vector<Bounds> boxesAround(const Bounds& content, const Bounds& whole) {
+    if (whole.empty()) return {};
+    std::vector<Bounds> boxes;
+    const double least = 1e-6 * glm::length(whole.extent());
+    dvec3 half = glm::max(0.5 * content.extent(), dvec3(least));
+    const dvec3 centre = glm::clamp(content.centre(), whole.minimum, whole.maximum);
+    for (Bounds box = content; !(box.contains(whole.minimum) && box.contains(whole.maximum)) &&
+                               boxes.size() < kMostBoxes;) {
+        boxes.push_back(box);
+        half *= kWider;
+        box = {glm::max(centre - half, whole.minimum), glm::min(centre + half, whole.maximum)};
+    }
+    boxes.push_back(whole);
+    return boxes;
+}
 
 /// Of the faces of a box that `direction` goes in by, those across x, y and z: their areas as the direction sees them, m².
 dvec3 shadowOfFaces(const Bounds& box, const dvec3& direction) {
@@ -72,6 +91,7 @@ LightEmission::LightEmission(const TracerScene& scene, const Bounds& content) : 
         const dvec3 half(0.5 * glm::length(whole_.extent()));
         whole_ = {whole_.centre() - half, whole_.centre() + half};
     }
+    boxes_ = boxesAround(content_, whole_);
     const Lights& lights = *scene.lights;
     const auto add = [this](double power) { sums_.push_back(sums_.back() + std::max(0.0, power)); };
     for (const LightSource& lamp : lights.lamps()) add(lamp.power(meanShadow(content_)));
@@ -87,17 +107,25 @@ Ray LightEmission::fromInfinity(const dvec3& direction, double choice, const dve
                                 double& area) const {
     area = 0;
     if (whole_.empty()) return {dvec3(0), direction};
-    const double contentArea = sumOf(shadowOfFaces(content_, direction)),
-                 wholeArea = sumOf(shadowOfFaces(whole_, direction));
-    const double toContent = contentArea > 0 && contentArea < wholeArea ? kToContent : 0.0;
-    const bool aimed = choice < toContent;
-    dvec3 position = pointOnShadow(aimed ? content_ : whole_, direction, u);
+    // Boxes that a direction sees from their edges have no shadow; all of them, where there is more than one.
+    const auto shadowOf = [&](size_t box) { return sumOf(shadowOfFaces(boxes_[box], direction)); };
+    const size_t last = boxes_.size() - 1;
+    const double toContent = last > 0 && shadowOf(0) > 0 ? kToContent : 0.0,
+                 toOther = last > 0 ? (1 - toContent) / double(last) : 1.0;
+    size_t aim = last;
+    if (choice < toContent) {
+        aim = 0;
+    } else if (last > 0) {
+        aim = 1 + std::min(size_t((choice - toContent) / toOther), last - 1);
+    }
+    dvec3 position = pointOnShadow(boxes_[aim], direction, u);
     double density = 0;
-    // A point of a box's face is on that box's shadow, however it was rounded.
-    if (toContent > 0 && (aimed || onShadow(content_, position, direction)))
-        density += toContent / contentArea;
-    if (wholeArea > 0 && (!aimed || onShadow(whole_, position, direction)))
-        density += (1 - toContent) / wholeArea;
+    for (size_t box = 0; box <= last; ++box) {
+        const double part = box == 0 && last > 0 ? toContent : toOther, shadow = shadowOf(box);
+        // A point of a box's face is on that box's shadow, however it was rounded.
+        if (part > 0 && shadow > 0 && (box == aim || onShadow(boxes_[box], position, direction)))
+            density += part / shadow;
+    }
     area = density > 0 ? 1 / density : 0;
     const double radius = 0.5 * glm::length(whole_.extent());
     position -= (glm::dot(position - whole_.centre(), direction) + radius) * direction;

@@ -25,7 +25,8 @@ private:
                                    double& area) const;
 
     const TracerScene& scene_;
-    Bounds whole_, content_;        // around everything, and around what most rays are to meet
+    Bounds whole_, content_;    // around everything, and around what most rays are to meet
+    std::vector<Bounds> boxes_; // from the content out to all: what light from infinity is aimed at
     std::vector<double> sums_{0.0}; // cumulative power, as Lights counts them
 };
 

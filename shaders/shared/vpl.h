@@ -12,8 +12,8 @@ struct VplData {
     vec4 normal;   // of the facet, unit, on the side that light came from; w: roughness
     vec4 shading;  // shading normal, unit; w: weight of the dielectric's coat
     vec4 travel;   // unit, of the light that arrives; w: parameter g of the phase function
-    vec4 power; // watts over all walks: on a surface what arrives, in a medium what is scattered
-    vec4 base; // base colour; w: metallic
+    vec4 power;    // watts over all walks: on a surface what arrives, in a medium what is scattered
+    vec4 base;     // base colour; w: metallic
 };
 
 /// A triangle as what hides light.
@@ -40,9 +40,9 @@ struct VplPoint {
 
 /// Points stand in sets, each spread over all surfaces; lights take turns at them.
 struct VplPointParams {
-    vec4 around;    // where lights are: their middle; w: m², mean square of their distance from it
-    float spread;   // a point's radius over its distance from there, √(|p - around|² + w)
-    uint setSize;   // points
+    vec4 around;  // where lights are: their middle; w: m², mean square of their distance from it
+    float spread; // a point's radius over its distance from there, √(|p - around|² + w)
+    uint setSize; // points
     uint setCount;
     uint padding;
 };
@@ -57,12 +57,14 @@ struct VplParams {
     uint compensation;   // kVplClamped and so on
     uint lightsOfScene;  // that compensation gathers straight
     float relaxed; // the bound's distance over that of the bound with which compensation gathers
-    float clampSquared;        // m²: 1/b; where light or receiver are in a medium
-    float surfaceClampSquared; // m²: 1/b from surface to surface
+    float clampSquared;        // m²: 1/b in the content; where light or receiver are in a medium
+    float surfaceClampSquared; // m²: 1/b in the content from surface to surface
     float leastRoughness;      // of virtual lights and of what they shine on
     uint depthSide; // texels along an edge of a light's map of optical depth; 0: grids are marched
     vec4 gridsMinimum; // of the box around all grids, render space
     vec4 gridsMaximum;
+    vec4
+        content; // middle of the box around what is in the scene, render space; w: 1/m², of half its diagonal, 0: bounds are the same everywhere
     uint samples;     // points at which a ray through media gathers
     uint mediaInView; // 0: the picture is seen through none
     uint treeSize;    // nodes; 0: nothing is hidden
@@ -70,10 +72,10 @@ struct VplParams {
 };
 
 struct VplShowParams {
-    uint what;    // kVplShowLights and so on
-    uint light;   // whose map
-    float radius; // of a ball, metres
-    float white;  // nits
+    uint what;                                    // kVplShowLights and so on
+    uint light;                                   // whose map
+    float radius;                                 // of a ball in the content, metres
+    float white;                                  // nits
     uint hasTransmittance, hasSurfaces, hasMedia; // 0: there is no such texture
     uint padding;
 };

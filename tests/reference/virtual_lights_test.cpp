@@ -17,10 +17,10 @@ struct Mean {
 };
 
 /// Of the power of rays that a scene's lights send out.
-Mean emittedPower(const Scene& scene) {
+Mean emittedPower(const Scene& scene, const Bounds& content = {}) {
     auto traced = reference::TracerScene::build(scene, dvec3(0), 1);
     if (!traced.ok()) throw std::runtime_error(traced.message());
-    const reference::LightEmission emission(*traced);
+    const reference::LightEmission emission(*traced, content);
     constexpr uint32_t kRays = 20000;
     dvec3 sum(0);
     double squares = 0;
@@ -116,6 +116,34 @@ TEST(LightEmission, PowerIsItsClosedForm) {
     const double sides = glowing.doubleSided ? 2 : 1;
     EXPECT_NEAR(glow.value.x, sides * 2 * kPi * 22, 4 * glow.error + 1e-6);
     EXPECT_NEAR(glow.value.y, sides * kPi * 22, 4 * glow.error + 1e-6);
+}
+
+TEST(LightEmission, AimingChangesNoPower) {
+    const dvec3 down(0.3, -1, 0.2);
+    Light sun;
+    sun.color = {1, 1, 1};
+    sun.type = LightType::Directional;
+    sun.intensity = 5;
+    // In a corner, with one and with two boxes around it that are not all; from the side flat; all there is; beyond it.
+    const dvec3 corner(-1, -0.5, -1.5);
+    const Bounds contents[] = {{corner, corner + dvec3(0.3)},
+                               {corner, corner + dvec3(0.06, 0.02, 0.03)},
+                               {dvec3(-0.2, 0.1, -0.2), dvec3(0.2, 0.1, 0.2)},
+                               {-0.5 * kBlack, 0.5 * kBlack},
+                               {dvec3(-9), dvec3(9)}};
+    for (const Bounds& content : contents) {
+        SceneMaker day;
+        addBlackBox(day);
+        day.addLight(sun, lookAlong(down, {0, 3, 0}));
+        const Mean power = emittedPower(day.take(), content);
+        EXPECT_NEAR(power.value.x, 5 * shadow(down), 4 * power.error + 1e-5);
+        SceneMaker sky;
+        addBlackBox(sky);
+        sky.addWhiteEnvironment();
+        const Mean white = emittedPower(sky.take(), content);
+        EXPECT_NEAR(white.value.x, 4 * kPi * 22 / 4, 4 * white.error);
+        EXPECT_LT(white.error, 0.05 * white.value.x) << "too coarse to tell anything";
+    }
 }
 
 TEST(InstantRadiosity, TheMeanIsTheSameForEveryBound) {

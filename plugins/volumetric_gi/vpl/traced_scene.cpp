@@ -141,6 +141,7 @@ Result<void> TracedScene::update(const plugin::FrameInputs& inputs, bool guessed
         content.maximum -= origin;
     }
     content = roughly(content);
+    content_ = content;
     emission_ = std::make_unique<reference::LightEmission>(scene_, content);
     walksKey_ = key_;
     if (guessed) {

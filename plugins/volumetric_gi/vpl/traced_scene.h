@@ -22,6 +22,8 @@ public:
     /// What walks go through.
     [[nodiscard]] const reference::TracerScene& scene() const { return scene_; }
     [[nodiscard]] const reference::LightEmission& emission() const { return *emission_; }
+    /// Around what is in the scene, without the landscape that it stands in; render space.
+    [[nodiscard]] const Bounds& content() const { return content_; }
     /// Are the media there guessed?
     [[nodiscard]] bool guessed() const { return media_ != nullptr; }
     /// The media as they are.
@@ -43,6 +45,7 @@ private:
     reference::TracerScene scene_;
     std::unique_ptr<reference::MediaField> media_; // where those in scene_ are guessed
     std::unique_ptr<reference::LightEmission> emission_;
+    Bounds content_;
     std::vector<gpu::VplTriangle> triangles_;
     std::vector<reference::TreeNode> tree_;
     const Scene* whole_ = nullptr;

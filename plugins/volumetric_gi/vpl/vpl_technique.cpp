@@ -56,11 +56,21 @@ constexpr uint32_t kPointSets = 8;
 /// With which it is found out what lights matter.
 constexpr uint32_t kSeenPoints = 64;
 
-/// (V/M)^(1/3) (transport.md, 5.1 i), metres.
-double meanDistanceIn(const Bounds& around, double lights) {
-    if (around.empty()) return 0;
-    const dvec3 extent = glm::max(around.extent(), 1e-3 * glm::length(around.extent()));
-    return std::cbrt(extent.x * extent.y * extent.z / lights);
+/// Between lights, metres: (V/M)^(1/3) (transport.md, 5.1 i) of the M lights in the content and the box around them; of all, where none are there.
+/// `times`: so many times as many lights as are given.
+double meanDistanceOf(const std::vector<dvec3>& lights, const Bounds& content, double times) {
+    Bounds around[2];
+    double count[2] = {};
+    for (const dvec3& position : lights)
+        for (const int i : {0, 1}) {
+            if (i == 0 && !content.contains(position)) continue;
+            around[i].include(position);
+            ++count[i];
+        }
+    const int i = count[0] > 0 ? 0 : 1;
+    if (around[i].empty()) return 0;
+    const dvec3 extent = glm::max(around[i].extent(), 1e-3 * glm::length(around[i].extent()));
+    return std::cbrt(extent.x * extent.y * extent.z / (count[i] * times));
 }
 
 bool converges(const plugin::FrameInputs& inputs) {
@@ -124,23 +134,12 @@ void VplTechnique::choose(const plugin::FrameInputs& inputs, const WalkOrder& or
                           uint32_t candidates) {
     const reference::SurfaceScene& surfaces = *scene_.scene().surfaces;
     const uint64_t seed = fg::mixHash(order.seed, order.generation);
-    Bounds around;
-    double lights = 0;
+    std::vector<dvec3> lights;
     for (const auto& walk : walks_.vertices)
-        for (const reference::WalkVertex& light : walk) {
-            around.include(light.position);
-            ++lights;
-        }
-    const double wanted = lights / candidates;
+        for (const reference::WalkVertex& light : walk) lights.push_back(light.position);
     chooseLights(walks_, seenPoints(inputs.view.data, surfaces, scene_.media(), kSeenPoints, seed),
-                 surfaces, scene_.media(), wanted, meanDistanceIn(around, wanted), seed);
-}
-
-/// Between the virtual lights of so many frames, metres.
-double VplTechnique::meanDistance(uint32_t frames) const {
-    Bounds around;
-    for (const dvec3& position : set_.positions) around.include(position);
-    return meanDistanceIn(around, double(set_.positions.size()) * double(frames));
+                 surfaces, scene_.media(), double(lights.size()) / candidates,
+                 meanDistanceOf(lights, scene_.content(), 1.0 / candidates), seed);
 }
 
 VplGather VplTechnique::gather(const plugin::FrameInputs& inputs) const {
@@ -163,10 +162,14 @@ VplGather VplTechnique::gather(const plugin::FrameInputs& inputs) const {
     params.mapSide = maps_.empty() && points_.points.empty() ? 0 : uint32_t(settings_.mapSide);
     params.treeSize = settings_.mapSide > 0 ? uint32_t(scene_.tree().size()) : 0;
     // The bound follows from all lights of an average: what it takes away tends to nothing as frames come.
-    const double mean = meanDistance(converges(inputs) ? inputs.view.data.frameIndex + 1 : 1);
+    const double frames = converges(inputs) ? double(inputs.view.data.frameIndex) + 1 : 1;
+    const double mean = meanDistanceOf(set_.positions, scene_.content(), frames);
     const auto squared = [](double x) { return float(x * x); };
     params.clampSquared = squared(mean * double(settings_.clamp));
     params.surfaceClampSquared = squared(mean * double(settings_.surfaceClamp));
+    const Bounds& content = scene_.content();
+    const double radius = content.empty() ? 0 : 0.5 * glm::length(content.extent());
+    if (radius > 0) params.content = vec4(vec3(content.centre()), squared(1 / radius));
     params.leastRoughness = settings_.roughness;
     params.lost = settings_.show == int32_t(gpu::kVplShowLost) ? 1 : 0;
     params.compensation = params.lost != 0 ? gpu::kVplClamped : uint32_t(settings_.compensation);
@@ -241,7 +244,9 @@ fg::BufferHandle VplTechnique::addStatistics(fg::FrameGraph& graph) {
 fg::TextureHandle VplTechnique::addPostPasses(fg::FrameGraph& graph,
                                               const plugin::FrameInputs& inputs,
                                               fg::TextureHandle color) {
-    const float radius = settings_.show == 0 ? 0.0f : float(kBall * meanDistance(1));
+    const float radius = settings_.show == 0
+                             ? 0.0f
+                             : float(kBall * meanDistanceOf(set_.positions, scene_.content(), 1));
     const fg::TextureHandle shown =
         addVplShow(graph, inputs, settings_, buffers_, gather_.params, radius, gathered_, color);
     buffers_ = {}; // of this frame alone

@@ -29,7 +29,6 @@ private:
     void makeLights(const plugin::FrameInputs& inputs);
     void choose(const plugin::FrameInputs& inputs, const WalkOrder& order, uint32_t candidates);
     [[nodiscard]] VplGather gather(const plugin::FrameInputs& inputs) const;
-    [[nodiscard]] double meanDistance(uint32_t frames) const;
 
     VplSettings settings_{};
     TracedScene scene_;

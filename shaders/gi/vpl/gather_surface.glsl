@@ -33,7 +33,8 @@ void addLightFrom(inout SurfaceLight sum, uint light, Receiver r) {
     if (!(maximumOf(intensity) > 0.0) || !vplSees(light, r.position, -direction, distance)) return;
     bool onSurface = vplLights[light].position.w < 0.0;
     float cosines = facing * (onSurface ? dot(vplLights[light].normal.xyz, -direction) : 1.0);
-    vec3 irradiance = intensity * (cosine * vplInverseSquare(squared, cosines, onSurface ? vpl.surfaceClampSquared : vpl.clampSquared));
+    float clampSquared = vplClampScale(r.position) * (onSurface ? vpl.surfaceClampSquared : vpl.clampSquared);
+    vec3 irradiance = intensity * (cosine * vplInverseSquare(squared, cosines, clampSquared));
 #if MEDIA
     irradiance *= exp(-vplOpticalDepth(light, r.position, direction, distance));
 #endif
@@ -56,7 +57,7 @@ SurfaceLight gatherSurface(Receiver r, uint number, uint stride, uvec2 pixel) {
     float cosine = dot(r.normal, direction);
     if (cosine > 0.0) {
         vec4 noise = pixelRandom(pixel, 14u);
-        float reach = sqrt(vpl.clampSquared * z);
+        float reach = sqrt(vplClampScale(r.position) * vpl.clampSquared * z);
         float t;
         Segment there;
         vec3 near = vec3(0.0);

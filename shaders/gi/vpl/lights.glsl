@@ -12,6 +12,12 @@ layout(std430) readonly buffer VplLights { VplData vplLights[]; };
 layout(std430) readonly buffer VplWalks { uint vplWalks[]; };   // where each walk's lights begin; one more: where the last ends
 layout(std430) readonly buffer VplDepths { uvec2 vplDepths[]; }; // the grids' optical depth, rgb in half precision, by light, direction, distance
 
+/// 1/b at a receiver over that in the content: around it lights lie apart in proportion to how far out they are.
+float vplClampScale(vec3 position) {
+    vec3 off = position - vpl.content.xyz;
+    return max(1.0, dot(off, off) * vpl.content.w);
+}
+
 const float kMostLost = 1e4; // over the bound: what is lost at a light itself has no end
 
 /// heldInverseSquare(), or what it takes away, where that is to be looked at.

@@ -23,9 +23,9 @@ vec3 phaseDirection(Segment s, vec3 direction, vec3 u, out float weight) {
 }
 
 /// 1/b of a point in a segment: no farther than a free path, or what the bound takes away would be most of the light, and has to be followed on and on.
-float localClampSquared(Segment s) {
+float localClampSquared(vec3 position, Segment s) {
     float freePath = s.size / max(maximumOf(s.depth), 1e-30);
-    return min(vpl.clampSquared, freePath * freePath);
+    return min(vplClampScale(position) * vpl.clampSquared, freePath * freePath);
 }
 
 vec3 scatteringOf(Segment s) {
@@ -48,7 +48,7 @@ vec3 evenCompensation(vec3 held, float clampSquared, Segment s, Ray ray, vec3 u,
 /// Light that a segment scatters at `position` against `direction`: of one class of walks, and what compensation makes up for, from another's.
 /// A loop, for shaders are compiled with all that they call in place: walksInMedium() is to stand here once.
 vec3 gatherAt(uint number, uint other, vec3 position, vec3 direction, Segment s, vec4 u) {
-    float clampSquared = localClampSquared(s);
+    float clampSquared = localClampSquared(position, s);
     vec3 light = vec3(0.0);
     vec3 weight = vec3(1.0);
     Ray back = Ray(position, direction);

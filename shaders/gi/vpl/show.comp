@@ -17,12 +17,13 @@ vec3 balls(Ray ray, float distance, vec3 picture) {
         vec3 way = vplLights[light].position.xyz - ray.origin;
         float along = dot(way, ray.direction);
         vec3 off = way - along * ray.direction;
-        float within = show.radius * show.radius - dot(off, off);
+        float radius = show.radius * sqrt(vplClampScale(vplLights[light].position.xyz));
+        float within = radius * radius - dot(off, off);
         if (!(within > 0.0)) continue;
         float t = along - sqrt(within);
-        if (!(t > 0.0) || t > distance + show.radius) continue;
+        if (!(t > 0.0) || t > distance + radius) continue;
         distance = t;
-        float facing = sqrt(within) / show.radius;
+        float facing = sqrt(within) / radius;
         picture = show.white * (0.2 + 0.6 * facing) * (vplLights[light].position.w < 0.0 ? vec3(0.1, 1.0, 0.1) : vec3(1.0, 0.1, 0.1));
     }
     return picture;
