@@ -16,6 +16,12 @@ struct VplData {
     vec4 base;     // base colour; w: metallic
 };
 
+/// Where a light is: all that its map follows from.
+struct VplPlace {
+    vec4 position; // as VplData's
+    vec4 normal;
+};
+
 /// A triangle as what hides light.
 struct VplTriangle {
     vec4 plane;  // n·p + w = 0, n unit; 0 without area

@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """Measures virtual point lights against the reference and writes the tables of docs/benchmarks-vpl.md.
 
-    tests/bench/vpl.py [--build build/release] [--out out/bench-lpv] [--scenes NAME,...] [--frames 48] [--spp 4096]
+    tests/bench/vpl.py [--build build/release] [--out out/bench-lpv] [--scenes NAME,...] [--frames 32] [--spp 4096]
 
 Scenes and references are those of lpv.py, and are kept in the same folder. Scenes that need the shared content ($TYNDALL_CONTENT, else ../shared/content)
 are left out with a note where it is missing.
@@ -20,15 +20,17 @@ from tables import ROOT, commit_date, machine, table  # noqa: E402
 GATHERING = ("gi.vpl.surfaces", "gi.vpl.upsampleSurfaces", "gi.vpl.refineSurfaces"), ("gi.vpl.march", "gi.vpl.upsample", "gi.vpl.refine")
 WALKS = (64, 128, 256, 512, 1024)
 CANDIDATES = (1, 2, 4, 8, 16)
+FINE = "256x144"  # of a single frame: outlines of the reference are averages, and so have its pixels to be
+LONGER = {"cornell fog, τ 8": 4, "Sponza with fog": 4, "cloud": 12}  # times as many frames, where they are needed
 
 
 class VplBench(Bench):
-    def picture(self, scene, label, *options, quality="high"):
+    def picture(self, scene, label, *options, quality="high", size=SIZE):
         """A picture and its report, made anew only where it is missing."""
         path = scene.with_name(scene.name.replace(".scene.json", f".vpl.{label}.exr"))
         report = path.with_suffix(".json")
         if not report.exists():
-            self.run("capture", scene, "-o", path, "--size", SIZE, "--aov", "terms", "--gi", "vpl", "--quality", quality, "--report", report, "--quiet", *options)
+            self.run("capture", scene, "-o", path, "--size", size, "--aov", "terms", "--gi", "vpl", "--quality", quality, "--report", report, "--quiet", *options)
         return path, json.loads(report.read_text())
 
     def noise(self, scene, reference, fewer):
@@ -50,7 +52,7 @@ def cloud(haze):
 
 
 def errors_table(bench, content, wanted, frames):
-    head = ["scene", "high, one frame: surfaces", "media", f"ultra, {frames} frames: surfaces", "media", "reference's own noise: surfaces", "media"]
+    head = ["scene", "high, one frame: surfaces", "media", "ultra, frames", "surfaces", "media", "reference's own noise: surfaces", "media"]
     rows = []
     for name, scene, fewer in [("cornell, no fog", load("content/cornell.scene.json"), 1), *scenes(content), ("cloud", cloud(False), 1 / 4), ("cloud in haze", cloud(True), 1 / 4)]:
         if wanted and not any(w in name for w in wanted):
@@ -59,12 +61,13 @@ def errors_table(bench, content, wanted, frames):
         path = bench.scene(name, scene)
         reference = bench.reference(path, fewer)
         noise = bench.noise(path, reference, fewer)
-        one, _ = bench.picture(path, "one", "--frames", 2)
-        many, _ = bench.picture(path, "many", "--converge", "--frames", frames, quality="ultra")
+        one, _ = bench.picture(path, "one", "--frames", 2, size=FINE)
+        count = frames * LONGER.get(name, 1)
+        many, _ = bench.picture(path, "many", "--converge", "--frames", count, quality="ultra")
         fog = any("medium" in node for node in scene["nodes"])
         solid = "cloud" not in name
-        cells = lambda picture: ["{:.3f}, {:.3f}".format(*bench.compare(picture, reference, terms)) if there else "" for terms, there in ((SURFACES, solid), (MEDIA, fog))]
-        rows.append([name, *cells(one), *cells(many), noise(SURFACES) if solid else "", noise(MEDIA) if fog else ""])
+        cells = lambda picture, *options: ["{:.3f}, {:.3f}".format(*bench.compare(picture, reference, terms, *options)) if there else "" for terms, there in ((SURFACES, solid), (MEDIA, fog))]
+        rows.append([name, *cells(one, "--reduce"), str(count), *cells(many), noise(SURFACES) if solid else "", noise(MEDIA) if fog else ""])
     return table(head, rows)
 
 
@@ -115,7 +118,7 @@ def main():
     parser.add_argument("--build", default=ROOT / "build/release", type=pathlib.Path)
     parser.add_argument("--out", default=ROOT / "out/bench-lpv", type=pathlib.Path)
     parser.add_argument("--scenes", default="")
-    parser.add_argument("--frames", default=48, type=int)
+    parser.add_argument("--frames", default=32, type=int)
     parser.add_argument("--spp", default=4096, type=int)
     parser.add_argument("--page", default=ROOT / "docs/benchmarks-vpl.md", type=pathlib.Path)
     arguments = parser.parse_args()
@@ -129,9 +132,10 @@ Made by `tests/bench/vpl.py` from a release build of {commit_date()}, on {machin
 What the columns mean and why the numbers are what they are: [techniques/vpl.md](techniques/vpl.md). The paper's figures are in [benchmarks-vpl-figures.md](benchmarks-vpl-figures.md).
 
 ## Error
-{SIZE} pixels, against the reference ({arguments.spp} samples a pixel, half as many for the smoke and a quarter for Sponza and the cloud): relmse and energy ([compare.md](compare.md)) of the
-indirect terms on surfaces and of those in media. "{arguments.frames} frames": an average with new walks in each. The reference's own noise is half the relmse between two of other random numbers:
-what is less cannot be told from nothing.
+Against the reference ({SIZE} pixels, {arguments.spp} samples for each, half as many for the smoke, eight times as many for fog of τ 8, four times for Sponza and the cloud): relmse and energy
+([compare.md](compare.md)) of the indirect terms on surfaces and of those in media. One frame is {FINE} pixels, of which averages of 4x4 are compared (`tyndall compare --reduce`): one sample a
+pixel has steps where the reference has smooth outlines, at {SIZE} 0.05 of squared error whatever the light. Ultra is an average of frames of {SIZE} with new walks in each. The reference's own
+noise is half the relmse between two of other random numbers: what is less cannot be told from nothing.
 
 {errors}
 ## Cost

@@ -46,8 +46,8 @@ public:
     }
 
     void addLight(const dvec3& position) {
-        gpu::VplData& light = lights_.lights.emplace_back();
-        light.position = vec4(vec3(position), 0);
+        lights_.lights.emplace_back();
+        lights_.places.push_back({vec4(vec3(position), 0), vec4(0)});
         lights_.positions.push_back(position);
         lights_.margins.push_back(0);
     }
@@ -66,7 +66,7 @@ public:
         params.mapSide = kSide;
         const gl::Buffer vpl("vpl", std::as_bytes(std::span(&params, 1))),
             points("params", std::as_bytes(std::span(&made.params, 1))),
-            lights("lights", std::as_bytes(std::span(lights_.lights))),
+            places("places", std::as_bytes(std::span(lights_.places))),
             triangles("triangles", std::as_bytes(std::span(triangles_))),
             all("points", std::as_bytes(std::span(made.points)));
         gl::Buffer maps("maps", lights_.lights.size() * kStride * sizeof(uint32_t));
@@ -76,7 +76,7 @@ public:
         glUseProgram((*program)->id());
         bind(GL_UNIFORM_BUFFER, "Vpl", vpl);
         bind(GL_UNIFORM_BUFFER, "Points", points);
-        bind(GL_SHADER_STORAGE_BUFFER, "VplLights", lights);
+        bind(GL_SHADER_STORAGE_BUFFER, "VplPlaces", places);
         bind(GL_SHADER_STORAGE_BUFFER, "VplTriangles", triangles);
         bind(GL_SHADER_STORAGE_BUFFER, "VplPoints", all);
         bind(GL_SHADER_STORAGE_BUFFER, "VplMaps", maps);

@@ -85,6 +85,21 @@ TEST(VplIncremental, MediaThatMoveALittleNeitherTraceNorMap) {
     }
 }
 
+TEST(VplIncremental, SplattedMapsAreKept) {
+    RenderOptions options = incremental();
+    options.settings = {"gi.vpl.incremental=true", "gi.vpl.walks=16",    "gi.vpl.mapSide=16",
+                        "gi.vpl.samples=4",        "gi.vpl.maps=points", "gi.vpl.points=512"};
+    TestRenderer kept;
+    Scene scene = smokyCorner();
+    EXPECT_NE(stateOf(kept.render(scene, options), "gi.vpl.maps"), "cached");
+    move(scene, "puff", {0.004, 0.002, 0});
+    const Rendered now = kept.render(scene, options);
+    EXPECT_EQ(stateOf(now, "gi.vpl.maps"), "cached");
+    EXPECT_EQ(stateOf(now, "gi.vpl.points"), "cached");
+    TestRenderer fresh;
+    EXPECT_LE(apart(now.beauty, fresh.render(scene, options).beauty), 1e-5);
+}
+
 TEST(VplIncremental, WhatElseChangesTracesAnew) {
     const RenderOptions options = incremental();
     TestRenderer kept;

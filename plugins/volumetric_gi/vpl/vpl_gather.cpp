@@ -204,10 +204,11 @@ fg::BufferHandle addDepthMaps(fg::FrameGraph& graph, const plugin::FrameInputs& 
 
 /// What lights see, from points of surfaces.
 fg::BufferHandle addSplattedMaps(fg::FrameGraph& graph, const VplBuffers& buffers,
-                                 fg::BufferHandle points, const gpu::VplPointParams& pointParams,
+                                 fg::BufferHandle places, fg::BufferHandle points,
+                                 const gpu::VplPointParams& pointParams,
                                  const gpu::VplParams& params, uint64_t key) {
     struct Data {
-        fg::BufferHandle lights, triangles, points, maps;
+        fg::BufferHandle places, triangles, points, maps;
         gpu::VplPointParams pointParams;
         gpu::VplParams params;
     };
@@ -215,7 +216,7 @@ fg::BufferHandle addSplattedMaps(fg::FrameGraph& graph, const VplBuffers& buffer
         .addPass<Data>(
             "gi.vpl.maps",
             [&](fg::Builder& builder, Data& data) {
-                data.lights = builder.read(buffers.lights);
+                data.places = builder.read(places);
                 data.triangles = builder.read(buffers.triangles);
                 data.points = builder.read(points);
                 data.pointParams = pointParams;
@@ -232,7 +233,7 @@ fg::BufferHandle addSplattedMaps(fg::FrameGraph& graph, const VplBuffers& buffer
                 auto command = context.compute("gi/vpl/splat_maps.comp");
                 command.params(data.params, "Vpl")
                     .params(data.pointParams, "Points")
-                    .bind("VplLights", data.lights)
+                    .bind("VplPlaces", data.places)
                     .bind("VplTriangles", data.triangles)
                     .bind("VplPoints", data.points)
                     .bind("VplMaps", data.maps)
@@ -263,9 +264,11 @@ VplBuffers addVplUpload(fg::FrameGraph& graph, const plugin::FrameInputs& inputs
     if (upload.points->points.empty()) {
         buffers.maps = add("gi.vpl.maps", *upload.maps, upload.mapsKey);
     } else {
-        const fg::BufferHandle points = add("gi.vpl.points", upload.points->points, upload.mapsKey);
-        buffers.maps =
-            addSplattedMaps(graph, buffers, points, upload.points->params, params, upload.mapsKey);
+        // Places apart from what lights carry, which changes with media that move while maps stay.
+        const fg::BufferHandle places = add("gi.vpl.places", upload.set->places, upload.mapsKey),
+                               points = add("gi.vpl.points", upload.points->points, upload.mapsKey);
+        buffers.maps = addSplattedMaps(graph, buffers, places, points, upload.points->params,
+                                       params, upload.mapsKey);
     }
     // Sizes are rounded up, so that the buffer's alone does not tell maps of one side from those of another.
     const uint64_t depthsKey = fg::mixHash(upload.lightsKey, params.depthSide);

@@ -64,6 +64,7 @@ VplSet packWalks(const Walks& walks, const WalkOrder& order) {
         for (const reference::WalkVertex& vertex : walks.vertices[i]) {
             if (!(vertex.medium ? order.fromMedia : order.fromSurfaces)) continue;
             set.lights.push_back(pack(vertex, share));
+            set.places.push_back({set.lights.back().position, set.lights.back().normal});
             set.positions.push_back(vertex.position);
             set.margins.push_back(vertex.medium ? 0 : vertex.point.margin);
         }

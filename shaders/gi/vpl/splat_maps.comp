@@ -7,7 +7,7 @@
 layout(local_size_x = 256) in;
 
 layout(std140) uniform Points { VplPointParams points; };
-layout(std430) readonly buffer VplLights { VplData vplLights[]; };
+layout(std430) readonly buffer VplPlaces { VplPlace vplPlaces[]; };
 layout(std430) readonly buffer VplTriangles { VplTriangle vplTriangles[]; };
 layout(std430) readonly buffer VplPoints { VplPoint vplPoints[]; };
 layout(std430) coherent buffer VplMaps { uint vplMaps[]; }; // numbers of points until the last step
@@ -237,7 +237,7 @@ void main() {
     if (light >= vpl.lightCount) return;
     uint texels = vpl.mapSide * vpl.mapSide;
     mapStart = vplMapStart(light);
-    origin = vplLights[light].position.xyz;
+    origin = vplPlaces[light].position.xyz;
     for (uint i = gl_LocalInvocationIndex; i < texels; i += kThreads) vplMaps[mapStart + i] = kVplNothing;
     if (gl_LocalInvocationIndex == 0u) {
         largeCount = 0u;
@@ -247,7 +247,7 @@ void main() {
     barrier();
     uint first = light % points.setCount * points.setSize;
     for (uint i = gl_LocalInvocationIndex; i < points.setSize; i += kThreads)
-        splat(first + i, vplLights[light].normal.xyz, vplLights[light].position.w < 0.0);
+        splat(first + i, vplPlaces[light].normal.xyz, vplPlaces[light].position.w < 0.0);
     memoryBarrierBuffer();
     barrier();
     splatLarge();
