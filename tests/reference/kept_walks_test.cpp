@@ -59,7 +59,11 @@ public:
     explicit Kept(const Scene& scene)
         : guessed_(reference::guessMedia(scene, dvec3(0))), truth_(scene, dvec3(0)) {
         traced_ = traced(scene);
+        // Lights know the media that glow.
+        traced_.lights.reset();
         *traced_.media = std::move(guessed_.field);
+        traced_.lights =
+            std::make_unique<reference::Lights>(scene, dvec3(0), *traced_.surfaces, *traced_.media);
         emission_.emplace(traced_);
         walker_.emplace(traced_, *emission_, reference::WalkSettings{});
     }
