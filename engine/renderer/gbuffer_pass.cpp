@@ -49,6 +49,7 @@ void drawMode(const GBufferData& data, AlphaMode mode, fg::PassContext& context)
     bindView(command, data.view);
     command.bind("Objects", data.scene->objects()).bind("Materials", data.scene->materials());
     command.set("textureLodBias", data.textureLodBias);
+    if (mode == AlphaMode::Mask) command.set("textureAnisotropy", data.scene->anisotropy());
     const DrawItem* last = nullptr;
     const std::array<vec4, 5> planes = frustumPlanes(data.view.data);
     forEachVisibleRun(items, planes, [&](const DrawRun& run) {

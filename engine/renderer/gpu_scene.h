@@ -57,6 +57,7 @@ public:
 
     /// Anisotropic filtering of material textures: 1 (none) to 16. Takes effect with the next update().
     void setAnisotropy(float anisotropy) { textures_.setAnisotropy(anisotropy); }
+    [[nodiscard]] float anisotropy() const { return textures_.anisotropy(); }
     /// Uploads what changed. `renderOrigin` is in world space, metres.
     /// Errors: a texture or mesh that is larger than the driver takes.
     Result<void> update(const Scene& scene, const dvec3& renderOrigin);

@@ -99,7 +99,8 @@ void ShadowPass::drawMap(const Data& data, size_t index, fg::PassContext& contex
             if (mask) {
                 bindView(command, data.view)
                     .bind("Materials", data.scene->materials())
-                    .set("textureLodBias", 0.0f);
+                    .set("textureLodBias", 0.0f)
+                    .set("textureAnisotropy", data.scene->anisotropy());
                 command.bind("baseColorTexture",
                              data.scene->textures(run.first->material).baseColor);
             }

@@ -14,6 +14,7 @@ uniform sampler2D normalTexture;
 uniform sampler2D occlusionTexture;         // R
 uniform sampler2D emissiveTexture;          // sRGB
 uniform float textureLodBias;
+uniform float textureAnisotropy; // of the sampler of base colours
 
 // What the rasteriser interpolates.
 struct SurfacePoint {
@@ -40,27 +41,46 @@ struct Surface {
     bool unlit;
 };
 
-vec2 materialUv(MaterialTexture use, SurfacePoint point) {
-    vec2 uv = use.offset.z < 1.5 ? (use.offset.z < 0.5 ? point.uvSets01.xy : point.uvSets01.zw)
-                                 : (use.offset.z < 2.5 ? point.uvSets23.xy : point.uvSets23.zw);
-    return vec2(dot(use.linear.xy, uv), dot(use.linear.zw, uv)) + use.offset.xy;
+// Where a texture is looked up, and how far from there the pixels to the right and below look.
+struct TexturePoint {
+    vec2 uv;
+    vec2 right;
+    vec2 below;
+};
+
+// Differences of what is interpolated, which all four pixels of a quad have: a material comes from a buffer, which drivers (llvmpipe) need not read for those
+// that a triangle does not cover, and differences of what follows from it may be anything.
+TexturePoint texturePoint(MaterialTexture use, SurfacePoint point) {
+    bvec4 second = bvec4(use.offset.z > 1.5);
+    vec4 sets = mix(point.uvSets01, point.uvSets23, second);
+    vec4 right = mix(dFdx(point.uvSets01), dFdx(point.uvSets23), second);
+    vec4 below = mix(dFdy(point.uvSets01), dFdy(point.uvSets23), second);
+    bvec2 odd = bvec2(use.offset.z == 1.0 || use.offset.z == 3.0);
+    mat2 linear = mat2(use.linear.xz, use.linear.yw);
+    return TexturePoint(linear * mix(sets.xy, sets.zw, odd) + use.offset.xy, linear * mix(right.xy, right.zw, odd),
+                        linear * mix(below.xy, below.zw, odd));
 }
 
 // Averaged frames sample the finest level: filtering normals and alpha would be a bias that no number of frames removes.
-vec4 sampleMaterial(sampler2D map, vec2 uv) {
-    return viewConverges() ? textureLod(map, uv, 0.0) : texture(map, uv, textureLodBias);
+vec4 sampleMaterial(sampler2D map, TexturePoint at) {
+    float scale = exp2(textureLodBias);
+    return viewConverges() ? textureLod(map, at.uv, 0.0) : textureGrad(map, at.uv, scale * at.right, scale * at.below);
 }
 
 vec4 surfaceBaseColor(MaterialData material, SurfacePoint point) {
     vec4 base = material.baseColor * point.color;
-    if (material.baseColorTexture.offset.w != 0.0) base *= sampleMaterial(baseColorTexture, materialUv(material.baseColorTexture, point));
+    if (material.baseColorTexture.offset.w != 0.0) base *= sampleMaterial(baseColorTexture, texturePoint(material.baseColorTexture, point));
     return base;
 }
 
 // Smaller mip levels blur alpha, and a fixed cutoff would make foliage thinner with distance: each level has a cutoff of its own.
 float surfaceAlphaCutoff(MaterialData material, SurfacePoint point) {
     if (material.baseColorTexture.offset.w == 0.0 || viewConverges()) return material.emissive.w;
-    float level = textureQueryLod(baseColorTexture, materialUv(material.baseColorTexture, point)).x + textureLodBias;
+    TexturePoint at = texturePoint(material.baseColorTexture, point);
+    vec2 size = vec2(textureSize(baseColorTexture, 0));
+    float right = length(at.right * size);
+    float below = length(at.below * size);
+    float level = log2(max(max(min(right, below), max(right, below) / textureAnisotropy), 1e-6)) + textureLodBias;
     level = clamp(level, 0.0, 15.0);
     int lower = int(level);
     int upper = min(lower + 1, 15);
@@ -76,7 +96,7 @@ vec3 unitOrElse(vec3 v, vec3 otherwise) {
 vec3 surfaceNormal(MaterialData material, SurfacePoint point, vec3 geometricNormal) {
     vec3 normal = unitOrElse(point.normal, geometricNormal);
     if (material.normalTexture.offset.w != 0.0 && point.tangent.w != 0.0) {
-        vec3 texel = sampleMaterial(normalTexture, materialUv(material.normalTexture, point)).xyz * 2.0 - 1.0;
+        vec3 texel = sampleMaterial(normalTexture, texturePoint(material.normalTexture, point)).xyz * 2.0 - 1.0;
         texel.xy *= material.normalScale;
         vec3 bitangent = cross(point.normal, point.tangent.xyz) * point.tangent.w;
         normal = unitOrElse(point.tangent.xyz * texel.x + bitangent * texel.y + point.normal * texel.z, normal);
@@ -102,19 +122,19 @@ Surface evaluateSurface(MaterialData material, SurfacePoint point) {
     surface.metallic = material.metallic;
     surface.roughness = material.roughness;
     if (material.metallicRoughnessTexture.offset.w != 0.0) {
-        vec4 texel = sampleMaterial(metallicRoughnessTexture, materialUv(material.metallicRoughnessTexture, point));
+        vec4 texel = sampleMaterial(metallicRoughnessTexture, texturePoint(material.metallicRoughnessTexture, point));
         surface.roughness *= texel.g;
         surface.metallic *= texel.b;
     }
     surface.specular = material.specular;
     surface.occlusion = 1.0;
     if (material.occlusionTexture.offset.w != 0.0) {
-        float texel = sampleMaterial(occlusionTexture, materialUv(material.occlusionTexture, point)).r;
+        float texel = sampleMaterial(occlusionTexture, texturePoint(material.occlusionTexture, point)).r;
         surface.occlusion = 1.0 + material.occlusionStrength * (texel - 1.0);
     }
     surface.emissive = material.emissive.rgb;
     if (material.emissiveTexture.offset.w != 0.0)
-        surface.emissive *= sampleMaterial(emissiveTexture, materialUv(material.emissiveTexture, point)).rgb;
+        surface.emissive *= sampleMaterial(emissiveTexture, texturePoint(material.emissiveTexture, point)).rgb;
 
     vec3 normal = surfaceNormal(material, point, surface.geometricNormal);
     // glTF 2.0, 3.9.6: back faces reverse the normal before lighting, normal map and all.

@@ -14,6 +14,8 @@ namespace {
 
 /// Of a mean light's worth, so much has each at least: points are few, and may miss what a light gives.
 constexpr double kLeastWorth = 0.1;
+/// Points that a light is asked about: a ray each.
+constexpr size_t kPointsOfLight = 16;
 /// Chances are met to within this by so many halvings.
 constexpr int kHalvings = 60;
 
@@ -87,15 +89,16 @@ void chooseLights(Walks& walks, const std::vector<SeenPoint>& seen,
     for (const auto& walk : walks.vertices)
         for (const reference::WalkVertex& light : walk) lights.push_back(&light);
     if (lights.empty() || double(lights.size()) <= wanted) return;
-    // Of what a point gets each light has a part: dark places matter as much as bright ones.
+    // Of what a point gets each light has a part: dark places matter as much as bright ones. A light is asked about every so many points alone.
+    const size_t stride = std::max<size_t>(seen.size() / kPointsOfLight, 1);
     std::vector<double> given(seen.size() * lights.size());
     tbb::parallel_for(size_t(0), seen.size(), [&](size_t p) {
         double* of = &given[p * lights.size()];
         double sum = 0;
         reference::Sampler sampler(seed, 2, uint32_t(p));
-        for (size_t i = 0; i < lights.size(); ++i)
+        for (size_t i = p % stride; i < lights.size(); i += stride)
             sum += of[i] = givenTo(seen[p], *lights[i], surfaces, media, least, sampler);
-        for (size_t i = 0; i < lights.size() && sum > 0; ++i) of[i] /= sum;
+        for (size_t i = p % stride; i < lights.size() && sum > 0; i += stride) of[i] /= sum;
     });
     std::vector<double> worth(lights.size(), 0);
     for (size_t p = 0; p < seen.size(); ++p)

@@ -8,7 +8,7 @@
 #endif
 #include "gi/vpl/receiver.glsl"
 
-/// What leaves a surface towards the eye: by the base, over the base's colour, which neighbours do not share; and by the microfacets. Nits.
+/// What leaves a surface towards the eye, over the colours that neighbours do not share: by the base, and by the microfacets. Nits.
 struct SurfaceLight {
     vec3 diffuse;
     vec3 specular;
@@ -17,6 +17,7 @@ struct SurfaceLight {
 void addLight(inout SurfaceLight sum, Receiver r, vec3 direction, vec3 irradiance) {
     Brdf white = r.brdf;
     white.baseColor = vec3(1.0);
+    white.metallic = 0.0;
     sum.diffuse += irradiance * evaluateBrdf(white, r.normal, r.toEye, direction).diffuse;
     sum.specular += irradiance * evaluateBrdf(r.brdf, r.normal, r.toEye, direction).specular;
 }
@@ -57,18 +58,20 @@ SurfaceLight gatherSurface(Receiver r, uint number, uint stride, uvec2 pixel) {
     float cosine = dot(r.normal, direction);
     if (cosine > 0.0) {
         vec4 noise = pixelRandom(pixel, 14u);
-        float reach = sqrt(vplClampScale(r.position) * vpl.clampSquared * z);
+        float widest = sqrt(vplClampScale(r.position) * vpl.clampSquared);
+        float reach = widest * sqrt(z);
         float t;
         Segment there;
         vec3 near = vec3(0.0);
         if (drawNearPoint(r.position, direction, reach, noise.w, t, there)) {
             uint number = uint(u.z * float(vpl.classes));
-            near = walksInMedium(number, r.position + direction * t, direction, there, relaxedBound(reach));
+            near = walksInMedium(number, r.position + direction * t, direction, there, relaxedBound(widest)); // of a grazing direction's reach it would be no bound at all
             near += segmentInScatter(Ray(r.position, direction), there, vpl.lightsOfScene, noise.xyz, number);
             near *= nearPointWeight(r.position, direction, reach, t);
         }
         addLight(sum, r, direction, near * (kPi * cosine / max(z, 1e-3)));
     }
 #endif
+    sum.specular /= max(specularColour(r), vec3(1e-30));
     return sum;
 }

@@ -37,4 +37,9 @@ bool receiverAt(ivec2 texel, out Receiver r) {
     return true;
 }
 
+vec3 diffuseColour(Receiver r) { return r.brdf.baseColor * (1.0 - r.brdf.metallic); }
+
+/// About what microfacets reflect of even light; from 60 degrees off the normal, or else as seen: nothing but a surface without microfacets has 0.
+vec3 specularColour(Receiver r) { return specularFresnel(r.brdf, min(abs(dot(r.normal, r.toEye)), 0.5)); }
+
 #endif

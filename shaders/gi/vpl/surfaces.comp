@@ -1,5 +1,5 @@
-// Light of virtual point lights on surfaces, before the media between them and the eye: of a pixel in each square, over the base colour and by the
-// microfacets; or of pixels that upsampling left open, both together.
+// Light of virtual point lights on surfaces, before the media between them and the eye: of a pixel in each square, by the base and by the
+// microfacets over the colours of these; or of pixels that upsampling left open, both together.
 #include "gi/vpl/gather_surface.glsl"
 #include "media/nearest_rays.glsl"
 
@@ -27,7 +27,7 @@ void main() {
     SurfaceLight light;
     if (there.w == 0.0) light = lightAt(fills ? square : marchedPixel(square, params, textureSize(gbufferDepth, 0)), uvec2(square), r);
     if (fills) {
-        if (there.w == 0.0) there = vec4(r.brdf.baseColor * light.diffuse + light.specular, 1.0);
+        if (there.w == 0.0) there = vec4(diffuseColour(r) * light.diffuse + specularColour(r) * light.specular, 1.0);
         imageStore(surfaceLight, square, there);
     } else {
         imageStore(surfaceLight, square, vec4(light.diffuse, 1.0));

@@ -6,7 +6,7 @@
 layout(local_size_x = 8, local_size_y = 8) in;
 
 layout(std140) uniform Params { MarchParams params; };
-uniform sampler2D squares; // light over the base colour, and to the right of it that of microfacets
+uniform sampler2D squares; // light of the base over its colour, and to the right of it that of the microfacets over theirs
 uniform sampler2D transmittance; // of media in view
 layout(rgba32f) writeonly uniform image2D surfaceRadiance; // w: 0 where it is to be gathered
 
@@ -64,5 +64,5 @@ void main() {
         diffuse = texelFetch(squares, pixel, 0).rgb;
         specular = texelFetch(squares, pixel + right, 0).rgb;
     }
-    imageStore(surfaceRadiance, pixel, best < params.refineWeight ? vec4(0.0) : vec4(r.brdf.baseColor * diffuse + specular, 1.0));
+    imageStore(surfaceRadiance, pixel, best < params.refineWeight ? vec4(0.0) : vec4(diffuseColour(r) * diffuse + specularColour(r) * specular, 1.0));
 }
