@@ -21,7 +21,7 @@ GATHERING = ("gi.vpl.surfaces", "gi.vpl.upsampleSurfaces", "gi.vpl.refineSurface
 WALKS = (64, 128, 256, 512, 1024)
 CANDIDATES = (1, 2, 4, 8, 16)
 FINE = "256x144"  # of a single frame: outlines of the reference are averages, and so have its pixels to be
-LONGER = {"cornell fog, τ 8": 4, "Sponza with fog": 4, "cloud": 12}  # times as many frames, where they are needed
+LONGER = {"cornell fog, τ 8": 4, "smoke in a room": 4, "Sponza with fog": 4, "cloud": 12}  # times as many frames, where they are needed
 
 
 class VplBench(Bench):

@@ -166,15 +166,18 @@ VplGather VplTechnique::gather(const plugin::FrameInputs& inputs) const {
     const double mean = meanDistanceOf(set_.positions, scene_.content(), frames);
     const auto squared = [](double x) { return float(x * x); };
     params.clampSquared = squared(mean * double(settings_.clamp));
-    params.surfaceClampSquared = squared(mean * double(settings_.surfaceClamp));
+    // On surfaces lights come to lie closer, with the root of their number, for there they have two dimensions. Lights in a lobe, whose solid angle goes with the
+    // fourth power of roughness, become more as frames come, though it narrows; so may what is gathered near by.
+    const double finer = std::pow(frames, 1.0 / 6);
+    params.surfaceClampSquared = squared(mean * double(settings_.surfaceClamp) / finer);
+    params.leastRoughness = float(double(settings_.roughness) / finer);
+    params.relaxed = float(double(settings_.relaxed) * finer);
     const Bounds& content = scene_.content();
     const double radius = content.empty() ? 0 : 0.5 * glm::length(content.extent());
     if (radius > 0) params.content = vec4(vec3(content.centre()), squared(1 / radius));
-    params.leastRoughness = settings_.roughness;
     params.lost = settings_.show == int32_t(gpu::kVplShowLost) ? 1 : 0;
     params.compensation = params.lost != 0 ? gpu::kVplClamped : uint32_t(settings_.compensation);
     params.lightsOfScene = inputs.lights.lightCount;
-    params.relaxed = settings_.relaxed;
     params.samples = uint32_t(settings_.samples);
     if (!grids.empty() && inputs.media.count > 0) {
         params.depthSide = uint32_t(settings_.depthSide);
