@@ -278,6 +278,61 @@ TEST_P(SurfacesTest, TextureRowsRunFromTheTopAndTransformsTurnThem) {
     EXPECT_EQ(at(6, 9).base, green);
 }
 
+/// The quad in `cells`² squares of two triangles each.
+Mesh fineQuad(uint32_t cells) {
+    Mesh mesh = quad();
+    const std::vector<vec3> corners = mesh.positions;
+    mesh.positions.clear();
+    mesh.uvs[0].clear();
+    mesh.indices.clear();
+    for (uint32_t j = 0; j <= cells; ++j)
+        for (uint32_t i = 0; i <= cells; ++i) {
+            const vec2 at(float(i) / float(cells), float(j) / float(cells));
+            mesh.positions.push_back({2 * at.x - 1, 2 * at.y - 1, 0});
+            mesh.uvs[0].push_back({at.x, 1 - at.y});
+        }
+    mesh.normals.assign(mesh.positions.size(), vec3(0, 0, 1));
+    mesh.tangents.assign(mesh.positions.size(), vec4(1, 0, 0, 1));
+    const uint32_t row = cells + 1;
+    for (uint32_t j = 0; j < cells; ++j)
+        for (uint32_t i = 0; i < cells; ++i) {
+            const uint32_t k = j * row + i;
+            mesh.indices.insert(mesh.indices.end(),
+                                {k, k + 1, k + row + 1, k, k + row + 1, k + row});
+        }
+    return mesh;
+}
+
+TEST_P(SurfacesTest, TexturesAreAsSharpOnTrianglesSmallerThanPixels) {
+    constexpr int kSide = 64;
+    // Red on the left and green on the right; the coarsest levels have the mean of both.
+    std::vector<uint8_t> rgba;
+    for (int i = 0; i < kSide * kSide; ++i) {
+        const bool left = i % kSide < kSide / 2;
+        rgba.insert(rgba.end(), {uint8_t(left ? 255 : 0), uint8_t(left ? 0 : 255), 0, 255});
+    }
+    for (const uint32_t cells : {1u, 24u}) {
+        // Nine tenths of the picture's width of six metres are a scale of 2.7.
+        Scene scene =
+            sceneOf(fineQuad(cells), Material{}, glm::scale(dmat4(1), dvec3(2.7, 2.7, 1)));
+        const int texture = addTexture(scene, {0, 0, 0, 0});
+        scene.images[0].width = scene.images[0].height = kSide;
+        scene.images[0].rgba = rgba;
+        scene.textures[size_t(texture)].sampler = {};
+        scene.textures[size_t(texture)].sampler.wrapU = Wrap::ClampToEdge;
+        scene.materials[0].baseColorTexture.texture = texture;
+        draw(scene);
+        // 4.4 texels a pixel: level 2.2, whose texels are at most two pixels wide.
+        for (int y = 1; y < kSize - 1; ++y)
+            for (int x = 1; x < kSize - 1; ++x) {
+                if (std::abs(x + 0.5 - kSize / 2) < 3) continue;
+                const dvec3 expected = x < kSize / 2 ? dvec3(1, 0, 0) : dvec3(0, 1, 0);
+                ASSERT_LT(glm::length(at(x, y).base - expected), 1e-3)
+                    << cells << " cells, pixel " << x << " " << y;
+            }
+    }
+}
+
 TEST_P(SurfacesTest, MaskedSurfacesHaveHolesWhereAlphaIsLow) {
     Scene scene = sceneOf(quad(), Material{});
     scene.materials[0].alphaMode = AlphaMode::Mask;
