@@ -62,18 +62,24 @@ float smithVisibility(float alpha, float cosine) {
     return 1.0 / (cosine + sqrt(a2 + (1.0 - a2) * cosine * cosine));
 }
 
-// Unit vectors: `toEye` and `toLight` away from the surface. 0 for light from behind.
-BrdfValue evaluateBrdf(Brdf brdf, vec3 normal, vec3 toEye, vec3 toLight) {
+// `toLight` above the surface: what microfacets would reflect were Fresnel's factor 1, 1/sr. The factor follows from `viewDotHalf`.
+float microfacetReflection(Brdf brdf, vec3 normal, vec3 toEye, vec3 toLight, out float viewDotHalf) {
     float normalDotLight = dot(normal, toLight);
-    if (!(normalDotLight > 0.0)) return BrdfValue(vec3(0.0), vec3(0.0));
     vec3 sum = toEye + toLight;
     float squared = dot(sum, sum);
     // Eye and light exactly opposite: grazing both, nothing is reflected.
     vec3 halfway = squared > 1e-12 ? sum * inversesqrt(squared) : normal;
-    float viewDotHalf = clamp(dot(toEye, halfway), 0.0, 1.0);
+    viewDotHalf = clamp(dot(toEye, halfway), 0.0, 1.0);
     // A normal map or a smooth normal can face away from the eye that sees the surface: |n·v|, as the appendix has it.
-    float microfacets = ggxDistribution(brdf.alpha, normal, halfway) * smithVisibility(brdf.alpha, normalDotLight) *
-                        smithVisibility(brdf.alpha, abs(dot(normal, toEye)));
+    return ggxDistribution(brdf.alpha, normal, halfway) * smithVisibility(brdf.alpha, normalDotLight) *
+           smithVisibility(brdf.alpha, abs(dot(normal, toEye)));
+}
+
+// Unit vectors: `toEye` and `toLight` away from the surface. 0 for light from behind.
+BrdfValue evaluateBrdf(Brdf brdf, vec3 normal, vec3 toEye, vec3 toLight) {
+    if (!(dot(normal, toLight) > 0.0)) return BrdfValue(vec3(0.0), vec3(0.0));
+    float viewDotHalf;
+    float microfacets = microfacetReflection(brdf, normal, toEye, toLight, viewDotHalf);
     BrdfValue value;
     value.diffuse = (1.0 - brdf.metallic) * (1.0 - dielectricFresnel(brdf, viewDotHalf)) / kBrdfPi * brdf.baseColor;
     value.specular = specularFresnel(brdf, viewDotHalf) * microfacets;

@@ -288,7 +288,7 @@ fg::TextureHandle addVplSurfaces(fg::FrameGraph& graph, const plugin::FrameInput
                     fg::TextureDesc desc = picture(inputs, 1);
                     if (stage == Stage::Squares) {
                         desc = picture(inputs, gather.surfaceFactor);
-                        desc.width *= 2;
+                        desc.width *= 3; // the parts of SurfaceLight
                     } else {
                         data.before = builder.read(before);
                         data.march.flags |= gpu::kMarchFill;

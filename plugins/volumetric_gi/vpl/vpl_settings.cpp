@@ -14,7 +14,7 @@ const SettingDesc kVplSettings[] = {
         VplSettings, walks, "gi.vpl.walks", "Walks", "", 1, 65536, 512,
         "Random walks from the lights; each leaves a virtual light wherever it is scattered."),
     TYNDALL_INT(
-        VplSettings, candidates, "gi.vpl.candidates", "Walks to choose from", "", 1, 64, 1,
+        VplSettings, candidates, "gi.vpl.candidates", "Walks to choose from", "", 1, 64, 16,
         "So many times as many walks are traced, and of their virtual lights one in so many is kept: such as matter to the picture. 1: all are, whatever the picture shows."),
     TYNDALL_INT(
         VplSettings, classes, "gi.vpl.classes", "Classes", "", 1, 1024, 8,

@@ -8,18 +8,13 @@
 #endif
 #include "gi/vpl/receiver.glsl"
 
-/// What leaves a surface towards the eye, over the colours that neighbours do not share: by the base, and by the microfacets. Nits.
-struct SurfaceLight {
-    vec3 diffuse;
-    vec3 specular;
-};
-
 void addLight(inout SurfaceLight sum, Receiver r, vec3 direction, vec3 irradiance) {
-    Brdf white = r.brdf;
-    white.baseColor = vec3(1.0);
-    white.metallic = 0.0;
-    sum.diffuse += irradiance * evaluateBrdf(white, r.normal, r.toEye, direction).diffuse;
-    sum.specular += irradiance * evaluateBrdf(r.brdf, r.normal, r.toEye, direction).specular;
+    float viewDotHalf;
+    vec3 reflected = irradiance * microfacetReflection(r.brdf, r.normal, r.toEye, direction, viewDotHalf);
+    float grazing = schlickWeight(viewDotHalf);
+    sum.diffuse += irradiance * ((1.0 - dielectricFresnel(r.brdf, viewDotHalf)) / kBrdfPi);
+    sum.specular += reflected * (1.0 - grazing);
+    sum.grazing += reflected * grazing;
 }
 
 void addLightFrom(inout SurfaceLight sum, uint light, Receiver r) {
@@ -44,11 +39,12 @@ void addLightFrom(inout SurfaceLight sum, uint light, Receiver r) {
 
 /// Of the walks from `number` on, every `stride`-th.
 SurfaceLight gatherSurface(Receiver r, uint number, uint stride, uvec2 pixel) {
-    SurfaceLight sum = SurfaceLight(vec3(0.0), vec3(0.0));
+    SurfaceLight sum = kDark;
     for (uint walk = number; walk < vpl.walkCount; walk += stride)
         for (uint light = vplWalks[walk]; light < vplWalks[walk + 1u]; ++light) addLightFrom(sum, light, r);
     sum.diffuse *= float(stride);
     sum.specular *= float(stride);
+    sum.grazing *= float(stride);
 #if MEDIA && COMPENSATION == 2
     // Evenly in what a facet receives; the bound reaches as far as its cosine lets it.
     vec4 u = pixelRandom(pixel, 13u);
@@ -72,6 +68,5 @@ SurfaceLight gatherSurface(Receiver r, uint number, uint stride, uvec2 pixel) {
         addLight(sum, r, direction, near * (kPi * cosine / max(z, 1e-3)));
     }
 #endif
-    sum.specular /= max(specularColour(r), vec3(1e-30));
     return sum;
 }

@@ -37,9 +37,20 @@ bool receiverAt(ivec2 texel, out Receiver r) {
     return true;
 }
 
-vec3 diffuseColour(Receiver r) { return r.brdf.baseColor * (1.0 - r.brdf.metallic); }
+/// Light that leaves a surface towards the eye, nits, over the colours that neighbours do not share: of the base, and of microfacets that reflect all or,
+/// after Schlick, what grazes them.
+struct SurfaceLight {
+    vec3 diffuse;
+    vec3 specular;
+    vec3 grazing;
+};
+const SurfaceLight kDark = SurfaceLight(vec3(0.0), vec3(0.0), vec3(0.0));
 
-/// About what microfacets reflect of even light; from 60 degrees off the normal, or else as seen: nothing but a surface without microfacets has 0.
-vec3 specularColour(Receiver r) { return specularFresnel(r.brdf, min(abs(dot(r.normal, r.toEye)), 0.5)); }
+/// With the surface's colours: as evaluateBrdf() has it.
+vec3 coloured(Receiver r, SurfaceLight light) {
+    float metallic = r.brdf.metallic;
+    vec3 straight = mix(vec3(kDielectricF0 * r.brdf.specular), r.brdf.baseColor, metallic);
+    return (1.0 - metallic) * r.brdf.baseColor * light.diffuse + straight * light.specular + mix(r.brdf.specular, 1.0, metallic) * light.grazing;
+}
 
 #endif

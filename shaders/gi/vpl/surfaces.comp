@@ -1,5 +1,5 @@
-// Light of virtual point lights on surfaces, before the media between them and the eye: of a pixel in each square, by the base and by the
-// microfacets over the colours of these; or of pixels that upsampling left open, both together.
+// Light of virtual point lights on surfaces, before the media between them and the eye: of a pixel in each square, the
+// parts of SurfaceLight side by side; or of pixels that upsampling left open, both together.
 #include "gi/vpl/gather_surface.glsl"
 #include "media/nearest_rays.glsl"
 
@@ -7,10 +7,10 @@ layout(local_size_x = 8, local_size_y = 8) in;
 
 layout(std140) uniform Params { MarchParams params; };
 uniform sampler2D gathered; // with kMarchFill: what is there already; w: 0 where nothing is
-layout(rgba32f) writeonly uniform image2D surfaceLight; // the microfacets' to the right of the other; or nits
+layout(rgba32f) writeonly uniform image2D surfaceLight; // three parts; or nits
 
 SurfaceLight lightAt(ivec2 pixel, uvec2 number, out Receiver r) {
-    SurfaceLight light = SurfaceLight(vec3(0.0), vec3(0.0));
+    SurfaceLight light = kDark;
     if (!receiverAt(pixel, r)) return light;
     uint first = uint(pixelNoise(number, 20u) * float(vpl.surfaceClasses)) % vpl.surfaceClasses;
     return gatherSurface(r, first, vpl.surfaceClasses, number);
@@ -20,17 +20,18 @@ void main() {
     ivec2 square = ivec2(gl_GlobalInvocationID.xy);
     ivec2 size = imageSize(surfaceLight);
     bool fills = (params.flags & kMarchFill) != 0u;
-    if (!fills) size.x /= 2;
+    if (!fills) size.x /= 3;
     if (any(greaterThanEqual(square, size))) return;
     vec4 there = fills ? texelFetch(gathered, square, 0) : vec4(0.0);
     Receiver r;
     SurfaceLight light;
     if (there.w == 0.0) light = lightAt(fills ? square : marchedPixel(square, params, textureSize(gbufferDepth, 0)), uvec2(square), r);
     if (fills) {
-        if (there.w == 0.0) there = vec4(diffuseColour(r) * light.diffuse + specularColour(r) * light.specular, 1.0);
+        if (there.w == 0.0) there = vec4(coloured(r, light), 1.0);
         imageStore(surfaceLight, square, there);
     } else {
         imageStore(surfaceLight, square, vec4(light.diffuse, 1.0));
         imageStore(surfaceLight, square + ivec2(size.x, 0), vec4(light.specular, 1.0));
+        imageStore(surfaceLight, square + ivec2(2 * size.x, 0), vec4(light.grazing, 1.0));
     }
 }

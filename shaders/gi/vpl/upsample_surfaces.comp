@@ -6,7 +6,7 @@
 layout(local_size_x = 8, local_size_y = 8) in;
 
 layout(std140) uniform Params { MarchParams params; };
-uniform sampler2D squares; // light of the base over its colour, and to the right of it that of the microfacets over theirs
+uniform sampler2D squares; // the parts of SurfaceLight side by side
 uniform sampler2D transmittance; // of media in view
 layout(rgba32f) writeonly uniform image2D surfaceRadiance; // w: 0 where it is to be gathered
 
@@ -31,6 +31,12 @@ float surfaceLikeness(Receiver r, Receiver other, float distance) {
     return f4 * f4 / (1.0 + offPlane / params.depthTolerance) / (1.0 + dot(way, way) / (kFar * kFar));
 }
 
+void addSquare(inout SurfaceLight sum, ivec2 square, ivec2 right, float weight) {
+    sum.diffuse += weight * texelFetch(squares, square, 0).rgb;
+    sum.specular += weight * texelFetch(squares, square + right, 0).rgb;
+    sum.grazing += weight * texelFetch(squares, square + 2 * right, 0).rgb;
+}
+
 void main() {
     ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
     if (any(greaterThanEqual(pixel, imageSize(surfaceRadiance)))) return;
@@ -40,10 +46,9 @@ void main() {
         return;
     }
     float distance = max(length(r.position - cameraRay(vec2(pixel) + 0.5).origin), 1e-20);
-    ivec2 size = textureSize(squares, 0) / ivec2(2, 1);
+    ivec2 size = textureSize(squares, 0) / ivec2(3, 1);
     ivec2 right = ivec2(size.x, 0);
-    vec3 diffuse = vec3(0.0);
-    vec3 specular = vec3(0.0);
+    SurfaceLight light = kDark;
     float total = 0.0;
     float best = params.factor > 1u ? 0.0 : 1.0;
     if (params.factor > 1u) {
@@ -55,14 +60,12 @@ void main() {
             float weight = rayWeight(like, near.share);
             best = max(best, like);
             total += weight;
-            diffuse += weight * texelFetch(squares, near.coarse, 0).rgb;
-            specular += weight * texelFetch(squares, near.coarse + right, 0).rgb;
+            addSquare(light, near.coarse, right, weight);
         }
-        diffuse /= max(total, 1e-30);
-        specular /= max(total, 1e-30);
+        total = max(total, 1e-30);
+        light = SurfaceLight(light.diffuse / total, light.specular / total, light.grazing / total);
     } else {
-        diffuse = texelFetch(squares, pixel, 0).rgb;
-        specular = texelFetch(squares, pixel + right, 0).rgb;
+        addSquare(light, pixel, right, 1.0);
     }
-    imageStore(surfaceRadiance, pixel, best < params.refineWeight ? vec4(0.0) : vec4(diffuseColour(r) * diffuse + specularColour(r) * specular, 1.0));
+    imageStore(surfaceRadiance, pixel, best < params.refineWeight ? vec4(0.0) : vec4(coloured(r, light), 1.0));
 }
