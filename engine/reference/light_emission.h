@@ -18,6 +18,8 @@ public:
     /// Watts of all lights, the mean of the channels; bounds where textures, cones or windows dim them.
     [[nodiscard]] double power() const { return sums_.back(); }
     [[nodiscard]] EmittedRay sample(Sampler& sampler) const;
+    /// What most rays are to meet; around all surfaces and media with an end, where nothing less was given.
+    [[nodiscard]] const Bounds& content() const { return content_; }
 
 private:
     /// `area`: 1/density of the ray among those of this direction, m².

@@ -8,6 +8,8 @@ namespace {
 
 /// Light that grazes a facet under a tilted shading normal would weigh without bound.
 constexpr double kLeastCosine = 1e-3;
+/// Of what is scattered outside of the ball around the content, so much is aimed at it.
+constexpr double kOnToContent = 0.5;
 
 /// What a shading normal makes of light that falls in along `travel`: its cosine over that of the facet (Veach 1997, 5.3).
 double tilt(const Surface& surface, const dvec3& direction) {
@@ -30,6 +32,26 @@ dvec3 WalkVertex::intensity(const dvec3& direction) const {
     return power * reflected * (facet / std::max(shading, kLeastCosine));
 }
 
+LightWalker::Aim LightWalker::aimFrom(const dvec3& position) const {
+    const dvec3 way = centre_ - position;
+    const double distance = glm::length(way);
+    if (!(radius_ > 0) || !(distance > radius_) || !std::isfinite(distance)) return {};
+    const double sine = radius_ / distance;
+    return {way / distance, sine * sine / (1 + std::sqrt(1 - sine * sine))};
+}
+
+dvec3 LightWalker::Aim::sample(const dvec2& u) const {
+    const double v = u.x * versine, sine = std::sqrt(v * (2 - v)), azimuth = 2 * kPi * u.y;
+    return glm::normalize(
+        Frame(axis).toWorld({sine * std::cos(azimuth), sine * std::sin(azimuth), 1 - v}));
+}
+
+double LightWalker::Aim::density(const dvec3& direction, double own) const {
+    const dvec3 apart = direction - axis;
+    const bool within = 0.5 * glm::dot(apart, apart) <= versine;
+    return (1 - kOnToContent) * own + (within ? kOnToContent / (2 * kPi * versine) : 0.0);
+}
+
 bool LightWalker::survives(double carried, double started, size_t vertices, Sampler& sampler,
                            PathWeights& weights) const {
     if (!(carried > 0)) return false;
@@ -44,7 +66,7 @@ bool LightWalker::survives(double carried, double started, size_t vertices, Samp
 void LightWalker::trace(Sampler& sampler, std::vector<WalkVertex>& walk) {
     walk.clear();
     start_ = emission_.sample(sampler);
-    const double started = maximumOf(start_.power);
+    double started = maximumOf(start_.power);
     if (!(started > 0) || !std::isfinite(started)) return;
     PathWeights weights;
     weights.throughput = start_.power;
@@ -75,9 +97,23 @@ void LightWalker::trace(Sampler& sampler, std::vector<WalkVertex>& walk) {
             weights.ratio *= share; // every hero would have drawn it by its own scattering
             vertex.power = weights.carried();
             walk.push_back(vertex);
-            const double cosine = std::clamp(vertex.medium->samplePhase(u.x), -1.0, 1.0);
-            ray = {vertex.position,
-                   glm::normalize(Frame(ray.direction).toWorld(directionAround(cosine, u.y)))};
+            const Aim aim = aimFrom(vertex.position);
+            dvec3 direction;
+            if (aim.versine > 0 && sampler.random() < kOnToContent) {
+                direction = aim.sample(u);
+            } else {
+                const double cosine = std::clamp(vertex.medium->samplePhase(u.x), -1.0, 1.0);
+                direction =
+                    glm::normalize(Frame(ray.direction).toWorld(directionAround(cosine, u.y)));
+            }
+            if (aim.versine > 0) {
+                const dvec3 apart = direction - ray.direction;
+                const double phase = vertex.medium->phaseValue(0.5 * glm::dot(apart, apart)),
+                             weight = phase / aim.density(direction, phase);
+                weights.throughput *= weight;
+                started *= weight;
+            }
+            ray = {vertex.position, direction};
         } else {
             vertex.point = scene_.surfaces->pointAt(ray, hit);
             if (vertex.point.unlit) return;
@@ -85,8 +121,24 @@ void LightWalker::trace(Sampler& sampler, std::vector<WalkVertex>& walk) {
             weights.throughput *= tilt(vertex.point.surface, ray.direction);
             vertex.power = weights.carried();
             walk.push_back(vertex);
-            const BsdfSample sample = Bsdf(vertex.point.surface, -ray.direction).sample(choice, u);
+            const Bsdf bsdf(vertex.point.surface, -ray.direction);
+            const Aim aim = aimFrom(vertex.position);
+            BsdfSample sample;
+            if (aim.versine > 0 && sampler.random() < kOnToContent) {
+                sample.direction = aim.sample(u);
+                sample.weight = bsdf.evaluate(sample.direction);
+                sample.density = bsdf.density(sample.direction);
+                sample.weight /= sample.density > 0 ? sample.density : 1.0;
+            } else {
+                sample = bsdf.sample(choice, u);
+            }
             if (sample.weight == dvec3(0)) return;
+            if (aim.versine > 0) {
+                const double weight =
+                    sample.density / aim.density(sample.direction, sample.density);
+                sample.weight *= weight;
+                started *= weight;
+            }
             weights.throughput *=
                 sample.weight /
                 std::max(tilt(vertex.point.surface, sample.direction), kLeastCosine);

@@ -27,12 +27,16 @@ struct WalkSettings {
     double leastSurvival = 0.05, mostSurvival = 0.95;
 };
 
-/// Makes walks, one for each sampler. Keeps scratch memory: one for each thread.
+/// Makes walks, one for each sampler. Keeps scratch memory: one for each thread. Outside of the ball around what the emission aims at, half of them are
+/// scattered on towards it: without that the rare walk that finds its way back from a landscape carries the power of square miles.
 class LightWalker {
 public:
     LightWalker(const TracerScene& scene, const LightEmission& emission,
                 const WalkSettings& settings)
-        : scene_(scene), emission_(emission), settings_(settings), segment_(*scene.media) {}
+        : scene_(scene), emission_(emission), settings_(settings),
+          centre_(emission.content().centre()),
+          radius_(emission.content().empty() ? 0 : 0.5 * glm::length(emission.content().extent())),
+          segment_(*scene.media) {}
 
     /// The vertices of one walk, in order; what stood in `walk` is dropped.
     void trace(Sampler& sampler, std::vector<WalkVertex>& walk);
@@ -42,11 +46,22 @@ public:
     [[nodiscard]] uint64_t rays() const { return rays_; }
 
 private:
+    /// Directions from a point to the ball around the content: a cone.
+    struct Aim {
+        dvec3 axis{0, 0, 1}; // unit
+        double versine = 0;  // 1 - cosine of half its angle; 0: none, the point is in the ball
+        [[nodiscard]] dvec3 sample(const dvec2& u) const;
+        /// Of directions that are drawn by `own` or, with a chance of kOnToContent, from the cone: per steradian.
+        [[nodiscard]] double density(const dvec3& direction, double own) const;
+    };
+    [[nodiscard]] Aim aimFrom(const dvec3& position) const;
     bool survives(double carried, double started, size_t vertices, Sampler& sampler,
                   PathWeights& weights) const;
     const TracerScene& scene_;
     const LightEmission& emission_;
     WalkSettings settings_;
+    dvec3 centre_; // of the ball around the content
+    double radius_;
     EmittedRay start_;
     MediaSegment segment_;
     MediumPoint mediumPoint_;

@@ -104,7 +104,7 @@ def choice_table(bench, content):
             row = [name, str(n), str(of("virtual_lights", report)), f"{of('walks_ms', report):.1f}", f"{of('choice_ms', report):.0f}", f"{of('maps_ms', report):.0f}", f"{gathered:.0f}",
                    *(f"{bench.compare(chosen, reference, terms)[0]:.4f}" for terms in (SURFACES, MEDIA)), ""]
             if n <= 4:
-                every, report = bench.picture(path, f"every{n}", *base, "--set", f"gi.vpl.walks={256 * n}", "--set", f"gi.vpl.classes={8}")
+                every, report = bench.picture(path, f"every{n}", *base, "--set", f"gi.vpl.walks={256 * n}", "--set", "gi.vpl.candidates=1", "--set", "gi.vpl.classes=8")
                 total = sum(milliseconds(report, *names) for names in GATHERING) + of("walks_ms", report) + of("maps_ms", report)
                 row += [f"{total:.0f}", *(f"{bench.compare(every, reference, terms)[0]:.4f}" for terms in (SURFACES, MEDIA))]
             else:

@@ -120,6 +120,7 @@ TEST(VplIncremental, WhatElseChangesTracesAnew) {
     EXPECT_EQ(traced(), 0);
     RenderOptions other = options;
     other.settings[0] = "gi.vpl.incremental=false";
+    other.settings.push_back("gi.vpl.candidates=1");
     EXPECT_EQ(kept.render(scene, other).statistics.at("walks_traced.gi.vpl"), 64);
 }
 

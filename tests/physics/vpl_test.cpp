@@ -193,7 +193,8 @@ class FewerSurfaces : public testing::TestWithParam<bool> {};
 TEST_P(FewerSurfaces, ShowTheSame) {
     const Scene scene = GetParam() ? cornerOfMetalAndPlaster() : sceneFromJson(corner(50, kFog));
     RenderOptions options = optionsWith(
-        {"gi.vpl.walks=64", "gi.vpl.compensation=clamped", "gi.vpl.surfaces.resolution=full"},
+        {"gi.vpl.walks=64", "gi.vpl.candidates=1", "gi.vpl.compensation=clamped",
+         "gi.vpl.surfaces.resolution=full"},
         kIndirectOnSurfaces);
     options.width = 192;
     options.height = 108;

@@ -166,10 +166,10 @@ VplGather VplTechnique::gather(const plugin::FrameInputs& inputs) const {
     const double mean = meanDistanceOf(set_.positions, scene_.content(), frames);
     const auto squared = [](double x) { return float(x * x); };
     params.clampSquared = squared(mean * double(settings_.clamp));
-    // On surfaces lights come to lie closer, with the root of their number, for there they have two dimensions. Lights in a lobe, whose solid angle goes with the
-    // fourth power of roughness, become more as frames come, though it narrows; so may what is gathered near by.
+    // Lights in a lobe, whose solid angle goes with the fourth power of roughness, become more as frames come, though it narrows; so may what is gathered near
+    // by. Between surfaces the bound may not: the distance d below which one light in d² outshines the average must fall slower than the root of the frames.
     const double finer = std::pow(frames, 1.0 / 6);
-    params.surfaceClampSquared = squared(mean * double(settings_.surfaceClamp) / finer);
+    params.surfaceClampSquared = squared(mean * double(settings_.surfaceClamp));
     params.leastRoughness = float(double(settings_.roughness) / finer);
     params.relaxed = float(double(settings_.relaxed) * finer);
     const Bounds& content = scene_.content();
