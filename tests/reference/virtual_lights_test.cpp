@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include <glm/ext/matrix_transform.hpp>
 #include <gtest/gtest.h>
 
 #include "reference/light_walk.h"
@@ -144,6 +145,61 @@ TEST(LightEmission, AimingChangesNoPower) {
         EXPECT_NEAR(white.value.x, 4 * kPi * 22 / 4, 4 * white.error);
         EXPECT_LT(white.error, 0.05 * white.value.x) << "too coarse to tell anything";
     }
+}
+
+/// Of the power that comes to vertices in `where` after it has been scattered outside of it. A walk is one sample.
+Mean scatteredInto(const reference::TracerScene& scene, const Bounds& where,
+                   const Bounds& content) {
+    const reference::LightEmission emission(scene, content);
+    reference::LightWalker walker(scene, emission, {});
+    std::vector<reference::WalkVertex> walk;
+    constexpr uint32_t kWalks = 1600000;
+    dvec3 sum(0);
+    double squares = 0;
+    for (uint32_t i = 0; i < kWalks; ++i) {
+        reference::Sampler sampler(11, 0, i);
+        walker.trace(sampler, walk);
+        dvec3 into(0);
+        for (const reference::WalkVertex& vertex : walk)
+            if (vertex.scatterings > 1 && where.contains(vertex.position)) into += vertex.power;
+        sum += into / double(kWalks);
+        squares += into.x * into.x / double(kWalks);
+    }
+    return {sum, std::sqrt(std::max(squares - sum.x * sum.x, 0.0) / double(kWalks))};
+}
+
+TEST(LightWalker, AimingAtTheContentChangesNoLight) {
+    // A lamp over shining ground, seen from a box and a puff far away; fog between them that scatters forward.
+    const dvec3 there(12, 4, 0);
+    const Bounds around{there - dvec3(1), there + dvec3(1)};
+    SceneMaker maker;
+    Material ground = matt({0.6f, 0.5f, 0.4f});
+    ground.roughness = 0.3f;
+    ground.specular = 1;
+    maker.addPrimitive(PrimitiveShape::Box, {60, 0.2, 60}, ground);
+    maker.addPrimitive(PrimitiveShape::Box, {0.8, 0.8, 0.8}, matt({0.5f, 0.5f, 0.5f}),
+                       glm::translate(dmat4(1), there));
+    for (const bool wide : {true, false}) {
+        Medium fog;
+        fog.kind = MediumKind::Sphere;
+        fog.size = dvec3(wide ? 50 : 0.9);
+        fog.scattering = vec3(wide ? 0.02f : 1.0f);
+        fog.anisotropy = wide ? 0.7f : 0.0f;
+        maker.addMedium(fog, glm::translate(dmat4(1), wide ? dvec3(0) : there));
+    }
+    maker.addPointLight({0, 2, 0}, 10, 0);
+    const Scene scene = maker.take();
+    auto traced = reference::TracerScene::build(scene, dvec3(0), 1);
+    ASSERT_TRUE(traced.ok()) << traced.message();
+    const Mean plain = scatteredInto(*traced, around, {}),
+               aimed = scatteredInto(*traced, around, around);
+    const double error = std::hypot(plain.error, aimed.error);
+    printf("%.5f W, aimed %+.2f standard errors; errors %.2f %%, %.2f %%\n", plain.value.x,
+           (aimed.value.x - plain.value.x) / error, 100 * plain.error / plain.value.x,
+           100 * aimed.error / aimed.value.x);
+    EXPECT_LE(std::abs(aimed.value.x - plain.value.x), 3 * error);
+    EXPECT_LT(error, 0.05 * plain.value.x) << "too coarse to tell anything";
+    EXPECT_LT(aimed.error, 0.7 * plain.error) << "not aimed at all";
 }
 
 TEST(InstantRadiosity, TheMeanIsTheSameForEveryBound) {
