@@ -5,6 +5,7 @@
 
 #include <embree3/rtcore.h>
 #include <fmt/format.h>
+#include <tbb/parallel_for.h>
 
 #include "reference/sampler.h"
 
@@ -70,11 +71,8 @@ dvec3 unitOr(const dvec3& v, const dvec3& otherwise) {
     return squared > 0 && std::isfinite(squared) ? v / std::sqrt(squared) : otherwise;
 }
 
-} // namespace
-
-Result<std::unique_ptr<SurfaceScene>> SurfaceScene::build(const Scene& scene, const dvec3& origin,
-                                                          int threads) {
-    std::unique_ptr<SurfaceScene> result(new SurfaceScene(scene));
+/// Calls `use(mesh, rayFromMesh)` for everything that is shown and has triangles; returns how many meshes have no area.
+template <typename Use> size_t forEachMesh(const Scene& scene, const dvec3& origin, Use&& use) {
     const std::vector<dmat4> world = scene.worldTransforms();
     const std::vector<bool> visible = scene.worldVisibility();
     size_t withoutArea = 0;
@@ -87,15 +85,47 @@ Result<std::unique_ptr<SurfaceScene>> SurfaceScene::build(const Scene& scene, co
                 ++withoutArea;
                 continue;
             }
+            if (mesh.indices.size() < 3) continue;
             const auto place = [&](const dmat4& worldFromMesh) {
                 dmat4 rayFromMesh = worldFromMesh;
                 rayFromMesh[3] -= dvec4(origin, 0);
-                result->addMesh(scene, mesh, rayFromMesh);
+                use(mesh, rayFromMesh);
             };
             if (node.instances.empty()) place(world[i]);
             for (const dmat4& instance : node.instances) place(world[i] * instance);
         }
     }
+    return withoutArea;
+}
+
+void putAt(MeshInstance& instance, const dmat4& rayFromMesh) {
+    const dmat3 linear(rayFromMesh);
+    const double determinant = glm::determinant(linear);
+    instance.place = rayFromMesh;
+    instance.mirrored = determinant < 0;
+    instance.rayFromMesh = mat3(linear);
+    // The cofactor matrix is the inverse transpose times the determinant: it exists for flat transforms, too.
+    instance.normalFromMesh =
+        mat3(dmat3(glm::cross(linear[1], linear[2]), glm::cross(linear[2], linear[0]),
+                   glm::cross(linear[0], linear[1])) *
+             (determinant < 0 ? -1.0 : 1.0));
+    const std::vector<vec3>& from = instance.mesh->positions;
+    for (size_t i = 0; i < from.size(); ++i)
+        instance.positions[i] = vec3(dvec3(rayFromMesh * dvec4(dvec3(from[i]), 1)));
+}
+
+bool flat(const dmat4& place) { return glm::determinant(dmat3(place)) == 0; }
+
+} // namespace
+
+Result<std::unique_ptr<SurfaceScene>> SurfaceScene::build(const Scene& scene, const dvec3& origin,
+                                                          int threads) {
+    std::unique_ptr<SurfaceScene> result(new SurfaceScene(scene));
+    const size_t withoutArea =
+        forEachMesh(scene, origin, [&](const Mesh& mesh, const dmat4& rayFromMesh) {
+            result->addMesh(scene, mesh, rayFromMesh);
+        });
+    result->updateBounds();
     if (withoutArea > 0)
         result->notes_.push_back(fmt::format(
             "{} meshes of lines or points are left out: they have no area for rays", withoutArea));
@@ -108,29 +138,54 @@ Result<std::unique_ptr<SurfaceScene>> SurfaceScene::build(const Scene& scene, co
 }
 
 void SurfaceScene::addMesh(const Scene& scene, const Mesh& mesh, const dmat4& rayFromMesh) {
-    if (mesh.indices.size() < 3) return;
     MeshInstance instance;
     instance.mesh = &mesh;
     instance.material = &scene.materialOf(mesh);
-    const dmat3 linear(rayFromMesh);
-    const double determinant = glm::determinant(linear);
-    instance.mirrored = determinant < 0;
-    instance.rayFromMesh = mat3(linear);
-    // The cofactor matrix is the inverse transpose times the determinant: it exists for flat transforms, too.
-    instance.normalFromMesh =
-        mat3(dmat3(glm::cross(linear[1], linear[2]), glm::cross(linear[2], linear[0]),
-                   glm::cross(linear[0], linear[1])) *
-             (determinant < 0 ? -1.0 : 1.0));
     instance.firstEmitter = MeshInstance::kNoEmitter;
-    instance.positions.reserve(mesh.positions.size() + 1);
-    for (const vec3& p : mesh.positions) {
-        const dvec3 at(rayFromMesh * dvec4(dvec3(p), 1));
-        instance.positions.push_back(vec3(at));
-        bounds_.include(at);
-    }
+    instance.positions.resize(mesh.positions.size() +
+                              1); // Embree reads 16 bytes at the last vertex
+    putAt(instance, rayFromMesh);
     instance.firstTriangle = uint32_t(triangleCount_);
     triangleCount_ += mesh.indices.size() / 3;
     instances_.push_back(std::move(instance));
+}
+
+void SurfaceScene::updateBounds() {
+    bounds_ = {};
+    for (const MeshInstance& instance : instances_)
+        for (size_t i = 0; i < instance.mesh->positions.size(); ++i)
+            bounds_.include(dvec3(instance.positions[i]));
+}
+
+bool SurfaceScene::move(const Scene& scene, const dvec3& origin, std::vector<uint32_t>& moved) {
+    std::vector<std::pair<const Mesh*, dmat4>> places;
+    forEachMesh(scene, origin, [&](const Mesh& mesh, const dmat4& rayFromMesh) {
+        places.emplace_back(&mesh, rayFromMesh);
+    });
+    moved.clear();
+    if (places.size() != instances_.size()) return false;
+    for (uint32_t i = 0; i < places.size(); ++i) {
+        if (places[i].first != instances_[i].mesh) return false;
+        if (places[i].second == instances_[i].place) continue;
+        if (flat(places[i].second) || flat(instances_[i].place)) return false;
+        moved.push_back(i);
+    }
+    if (moved.empty()) return true;
+    if (!moves_) { // once; walks through such a tree take somewhat longer
+        rtcSetSceneFlags(tree_, RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_DYNAMIC);
+        rtcSetSceneBuildQuality(tree_, RTC_BUILD_QUALITY_MEDIUM);
+        moves_ = true;
+    }
+    for (const uint32_t i : moved) {
+        putAt(instances_[i], places[i].second);
+        RTCGeometry geometry = rtcGetGeometry(tree_, i);
+        rtcSetGeometryBuildQuality(geometry, RTC_BUILD_QUALITY_REFIT);
+        rtcUpdateGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0);
+        rtcCommitGeometry(geometry);
+    }
+    rtcCommitScene(tree_);
+    updateBounds();
+    return rtcGetDeviceError(device_) == RTC_ERROR_NONE;
 }
 
 Result<void> SurfaceScene::buildTree(int threads) {
@@ -143,8 +198,7 @@ Result<void> SurfaceScene::buildTree(int threads) {
     rtcSetSceneFlags(tree_, RTC_SCENE_FLAG_ROBUST); // no ray slips between two triangles
     for (MeshInstance& instance : instances_) {
         RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
-        const size_t vertices = instance.positions.size();
-        instance.positions.push_back(vec3(0)); // Embree reads 16 bytes at the last vertex
+        const size_t vertices = instance.mesh->positions.size();
         rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
                                    instance.positions.data(), 0, sizeof(vec3), vertices);
         rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
@@ -216,18 +270,48 @@ bool SurfaceScene::occluded(const Ray& ray, double farthest, uint64_t chance) co
     return shadow.tfar < 0;
 }
 
+std::array<dvec3, 3> SurfaceScene::corners(uint32_t instance, uint32_t triangle) const {
+    const uint32_t* corner = &instances_[instance].mesh->indices[3 * size_t(triangle)];
+    const std::vector<vec3>& positions = instances_[instance].positions;
+    return {dvec3(positions[corner[0]]), dvec3(positions[corner[1]]), dvec3(positions[corner[2]])};
+}
+
+uint32_t SurfaceScene::instanceOf(uint32_t triangle) const {
+    const auto after = std::upper_bound(
+        instances_.begin(), instances_.end(), triangle,
+        [](uint32_t t, const MeshInstance& instance) { return t < instance.firstTriangle; });
+    return uint32_t(after - instances_.begin() - 1);
+}
+
+uint64_t SurfaceScene::coveredPieces(uint32_t instance, uint32_t triangle) const {
+    uint64_t covers = 0;
+    for (int j = 0; j < kPiecesAlongEdge; ++j)
+        for (int i = 0; i + j < kPiecesAlongEdge; ++i)
+            for (int upper = 0; upper < (i + j + 1 < kPiecesAlongEdge ? 2 : 1); ++upper) {
+                const int piece = pieceNumber(i, j, upper != 0);
+                Sampler sampler((uint64_t(instance) << 32) | triangle, uint64_t(piece), 0);
+                // A point of the piece, folded into it.
+                dvec2 at(sampler.random(), sampler.random());
+                if (at.x + at.y > 1) at = 1.0 - at;
+                if (upper) at = 1.0 - at;
+                at = (dvec2(i, j) + at) / double(kPiecesAlongEdge);
+                if (sampler.random() < coverageAt(instance, triangle, at.x, at.y))
+                    covers |= 1ull << piece;
+            }
+    return covers;
+}
+
 std::vector<SceneTriangle> SurfaceScene::triangles() const {
-    std::vector<SceneTriangle> all;
-    all.reserve(triangleCount_);
-    for (const MeshInstance& instance : instances_) {
+    std::vector<SceneTriangle> all(triangleCount_);
+    for (uint32_t number = 0; number < instances_.size(); ++number) {
+        const MeshInstance& instance = instances_[number];
         const std::vector<uint32_t>& indices = instance.mesh->indices;
         const bool opaque = instance.material->alphaMode == AlphaMode::Opaque;
-        for (size_t i = 0; i + 2 < indices.size(); i += 3) {
-            SceneTriangle& triangle = all.emplace_back();
-            triangle.opaque = opaque;
-            for (size_t k = 0; k < 3; ++k)
-                triangle.corners[k] = dvec3(instance.positions[indices[i + k]]);
-        }
+        tbb::parallel_for(uint32_t(0), uint32_t(indices.size() / 3), [&](uint32_t i) {
+            SceneTriangle& triangle = all[instance.firstTriangle + i];
+            triangle.corners = corners(number, i);
+            if (!opaque) triangle.covers = coveredPieces(number, i);
+        });
     }
     return all;
 }

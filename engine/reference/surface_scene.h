@@ -25,6 +25,7 @@ struct MeshInstance {
     mat3 normalFromMesh{1}; // inverse transpose; sign of the determinant left in
     mat3 rayFromMesh{1};    // of vectors: tangents
     bool mirrored = false;
+    dmat4 place{1};             // ray space from the mesh's
     uint32_t firstTriangle = 0; // number of its first triangle among all
     std::vector<vec3> positions;
     uint32_t firstEmitter =
@@ -49,9 +50,16 @@ struct SurfacePoint {
     double margin = 0; // metres by which rays from here must start off the surface
 };
 
+/// A triangle's pieces: each of its edges in eight parts. Piece (i, j, upper) has barycentric u in [i, i+1]/8, v in [j, j+1]/8, and is the upper half of that.
+inline constexpr int kPiecesAlongEdge = 8;
+[[nodiscard]] constexpr int pieceNumber(int i, int j, bool upper) {
+    return j * (2 * kPiecesAlongEdge - j) + 2 * i + int(upper);
+}
+
 struct SceneTriangle {
     std::array<dvec3, 3> corners{}; // ray space
-    bool opaque = true;             // false: rays pass parts of it
+    uint64_t covers = ~0ull;        // a bit for each of its pieces: rays that meet the others pass
+    [[nodiscard]] bool opaque() const { return covers == ~0ull; }
 };
 
 enum class RayKind { Camera = 0, Path = 1 };
@@ -63,6 +71,9 @@ public:
     static Result<std::unique_ptr<SurfaceScene>> build(const Scene& scene, const dvec3& origin,
                                                        int threads);
     ~SurfaceScene();
+    /// Moves meshes to where their nodes are now: trees are refitted in place of building them anew. `moved`: numbers of the instances that were.
+    /// False, and nothing is changed, where the scene shows other meshes than it did, or one is or was flat.
+    bool move(const Scene& scene, const dvec3& origin, std::vector<uint32_t>& moved);
     SurfaceScene(const SurfaceScene&) = delete;
     SurfaceScene& operator=(const SurfaceScene&) = delete;
 
@@ -77,8 +88,11 @@ public:
     [[nodiscard]] std::vector<MeshInstance>& mutableInstances() { return instances_; }
     [[nodiscard]] const MaterialReader& materials() const { return materials_; }
     [[nodiscard]] size_t triangleCount() const { return triangleCount_; }
-    /// All of them, instance by instance.
+    /// All of them, instance by instance. Of a piece of partial coverage chance decides, the same each time, so that coverage is right on average.
     [[nodiscard]] std::vector<SceneTriangle> triangles() const;
+    [[nodiscard]] std::array<dvec3, 3> corners(uint32_t instance, uint32_t triangle) const;
+    /// That a triangle belongs to; `triangle`: its number among all.
+    [[nodiscard]] uint32_t instanceOf(uint32_t triangle) const;
     /// Of all triangles, in ray space; empty without any.
     [[nodiscard]] const Bounds& bounds() const { return bounds_; }
     /// Sentences on what is left out.
@@ -88,12 +102,15 @@ public:
 
 private:
     explicit SurfaceScene(const Scene& scene) : materials_(scene) {}
+    [[nodiscard]] uint64_t coveredPieces(uint32_t instance, uint32_t triangle) const;
     void addMesh(const Scene& scene, const Mesh& mesh, const dmat4& rayFromMesh);
+    void updateBounds();
     Result<void> buildTree(int threads);
     [[nodiscard]] VertexValues vertexValues(const RayHit& hit) const;
 
     RTCDeviceTy* device_ = nullptr;
     RTCSceneTy* tree_ = nullptr;
+    bool moves_ = false; // the tree is of a kind that can be refitted
     std::vector<MeshInstance> instances_;
     MaterialReader materials_;
     size_t triangleCount_ = 0;

@@ -63,7 +63,7 @@ std::vector<RTCBuildPrimitive> boxesOf(std::span<const SceneTriangle> triangles,
     for (size_t i = 0; i < triangles.size(); ++i) {
         const auto& [a, b, c] = triangles[i].corners;
         const double area = glm::length(glm::cross(b - a, c - a));
-        if (!triangles[i].opaque || !(area > 0) || !std::isfinite(area)) continue;
+        if (triangles[i].covers == 0 || !(area > 0) || !std::isfinite(area)) continue;
         const vec3 low(glm::min(a, glm::min(b, c))), high(glm::max(a, glm::max(b, c)));
         boxes.push_back({low.x, low.y, low.z, 0, high.x, high.y, high.z, uint32_t(i)});
         all.include(dvec3(low));

@@ -25,9 +25,11 @@ struct VplPlace {
 /// A triangle as what hides light.
 struct VplTriangle {
     vec4 plane;  // n·p + w = 0, n unit; 0 without area
-    vec4 corner; // render space; w: 0 where rays may pass, else 1
-    vec4 second; // dot(second.xyz, p - corner): barycentric coordinate of the second corner
-    vec4 third;  // the same of the third
+    vec4 corner; // render space; w: 0 where rays pass parts of it, else 1
+    vec3 second; // dot(second, p - corner): barycentric coordinate of the second corner
+    uint coversLow;  // a bit for each piece that no ray passes (reference::SceneTriangle)
+    vec3 third;      // as `second`, of the third
+    uint coversHigh;
 };
 
 /// As reference::TreeNode.
@@ -75,6 +77,9 @@ struct VplParams {
     uint mediaInView; // 0: the picture is seen through none
     uint treeSize;    // nodes; 0: nothing is hidden
     uint lost;        // 1: lights give what the bound takes away from them, and nothing else
+    float mediumClampSquared; // m²: 1/b in the content from surface to medium
+    uint nearLight;           // 1: what the bound takes away between surfaces is in `VplNear`
+    uint padding0, padding1;
 };
 
 struct VplShowParams {

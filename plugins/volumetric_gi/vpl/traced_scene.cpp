@@ -18,6 +18,7 @@ static_assert(gpu::kVplNothing == reference::TreeNode::kInner);
 
 /// Of surfaces, and of lights but for glowing media. Versions tell that nodes have moved, not which.
 struct Keys {
+    uint64_t shapes = fg::kHashStart; // surfaces, wherever they are
     uint64_t surfaces = fg::kHashStart, lights = fg::kHashStart;
 };
 
@@ -30,7 +31,8 @@ Keys keysOf(const Scene& scene, const dvec3& origin) {
     Keys keys;
     const SceneVersions& now = scene.versions;
     for (const uint64_t version : {now.structure, now.meshes, now.materials, now.textures})
-        keys.surfaces = fg::mixHash(keys.surfaces, version);
+        keys.shapes = fg::mixHash(keys.shapes, version);
+    keys.surfaces = keys.shapes;
     for (const uint64_t version : {now.lights, now.environment})
         keys.lights = fg::mixHash(keys.lights, version);
     for (int axis = 0; axis < 3; ++axis) {
@@ -69,14 +71,16 @@ gpu::VplTriangle packTriangle(const reference::SceneTriangle& from) {
     gpu::VplTriangle triangle{};
     const dvec3 &corner = from.corners[0], a = from.corners[1] - corner,
                 b = from.corners[2] - corner;
-    triangle.corner = vec4(vec3(corner), from.opaque ? 1 : 0);
+    triangle.corner = vec4(vec3(corner), from.opaque() ? 1 : 0);
     const dvec3 across = glm::cross(a, b);
     const double twiceArea = glm::length(across);
     if (!(twiceArea > 0)) return triangle;
     const dvec3 normal = across / twiceArea;
     triangle.plane = vec4(vec3(normal), float(-glm::dot(normal, corner)));
-    triangle.second = vec4(vec3(glm::cross(b, normal) / twiceArea), 0);
-    triangle.third = vec4(vec3(glm::cross(normal, a) / twiceArea), 0);
+    triangle.second = vec3(glm::cross(b, normal) / twiceArea);
+    triangle.third = vec3(glm::cross(normal, a) / twiceArea);
+    triangle.coversLow = uint32_t(from.covers);
+    triangle.coversHigh = uint32_t(from.covers >> 32);
     return triangle;
 }
 
@@ -89,9 +93,33 @@ Result<void> TracedScene::updateSurfaces(const Scene& scene, const dvec3& origin
     auto tree = reference::buildTriangleTree(triangles);
     if (!tree.ok()) return tree.error();
     tree_ = std::move(*tree);
+    hasHoles_ = std::any_of(triangles.begin(), triangles.end(),
+                            [](const auto& triangle) { return !triangle.opaque(); });
     triangles_.resize(triangles.size());
     std::transform(triangles.begin(), triangles.end(), triangles_.begin(), packTriangle);
     return {};
+}
+
+/// Surfaces that are what they were, but not all where they were.
+bool TracedScene::moveSurfaces(const Scene& scene, const dvec3& origin) {
+    std::vector<uint32_t> moved;
+    reference::SurfaceScene& surfaces = *scene_.surfaces;
+    if (!surfaces.move(scene, origin, moved)) return false;
+    for (const uint32_t number : moved) {
+        const reference::MeshInstance& instance = surfaces.instances()[number];
+        for (uint32_t i = 0; i < instance.mesh->indices.size() / 3; ++i) {
+            gpu::VplTriangle& triangle = triangles_[instance.firstTriangle + i];
+            const uint64_t covers =
+                (uint64_t(triangle.coversHigh) << 32) | uint64_t(triangle.coversLow);
+            triangle = packTriangle({surfaces.corners(number, i), covers});
+        }
+    }
+    if (!moved.empty())
+        reference::refitTriangleTree(tree_, [&](uint32_t triangle) {
+            const uint32_t number = surfaces.instanceOf(triangle);
+            return surfaces.corners(number, triangle - surfaces.instances()[number].firstTriangle);
+        });
+    return true;
 }
 
 void TracedScene::updateMedia(const Scene& scene, const dvec3& origin, bool guessed) {
@@ -125,9 +153,13 @@ Result<void> TracedScene::update(const plugin::FrameInputs& inputs, bool guessed
     if (whole_ != &scene || keys.surfaces != surfacesKey_) {
         emission_.reset();
         scene_.lights.reset();
-        if (Result<void> built = updateSurfaces(scene, origin); !built.ok()) {
-            whole_ = nullptr;
-            return built;
+        const bool moved =
+            whole_ == &scene && keys.shapes == shapesKey_ && moveSurfaces(scene, origin);
+        if (!moved) {
+            if (Result<void> built = updateSurfaces(scene, origin); !built.ok()) {
+                whole_ = nullptr;
+                return built;
+            }
         }
     }
     emission_.reset();
@@ -153,6 +185,7 @@ Result<void> TracedScene::update(const plugin::FrameInputs& inputs, bool guessed
     whole_ = &scene;
     changesKey_ = changes;
     surfacesKey_ = keys.surfaces;
+    shapesKey_ = keys.shapes;
     return {};
 }
 

@@ -33,6 +33,8 @@ public:
     /// All triangles, and a tree over them, as shaders read them.
     [[nodiscard]] const std::vector<gpu::VplTriangle>& triangles() const { return triangles_; }
     [[nodiscard]] const std::vector<reference::TreeNode>& tree() const { return tree_; }
+    /// Are there triangles that rays pass parts of?
+    [[nodiscard]] bool hasHoles() const { return hasHoles_; }
     /// Of everything that walks' courses follow from, of what they carry, and of the surfaces alone.
     [[nodiscard]] uint64_t walksKey() const { return walksKey_; }
     [[nodiscard]] uint64_t key() const { return key_; }
@@ -40,6 +42,7 @@ public:
 
 private:
     Result<void> updateSurfaces(const Scene& scene, const dvec3& origin);
+    bool moveSurfaces(const Scene& scene, const dvec3& origin);
     void updateMedia(const Scene& scene, const dvec3& origin, bool guessed);
 
     reference::TracerScene scene_;
@@ -48,8 +51,10 @@ private:
     Bounds content_;
     std::vector<gpu::VplTriangle> triangles_;
     std::vector<reference::TreeNode> tree_;
+    bool hasHoles_ = false;
     const Scene* whole_ = nullptr;
-    uint64_t changesKey_ = 0, key_ = 0, walksKey_ = 0, guessHash_ = 0, surfacesKey_ = 0;
+    uint64_t changesKey_ = 0, key_ = 0, walksKey_ = 0, guessHash_ = 0, surfacesKey_ = 0,
+             shapesKey_ = 0;
 };
 
 } // namespace tyndall::volumetric_gi

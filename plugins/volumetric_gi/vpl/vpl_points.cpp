@@ -74,20 +74,16 @@ void addPieces(std::vector<Piece>& pieces, const Around& around, const Piece& pi
 /// `chance`, `u`, `v`: in [0,1).
 bool covered(const reference::SurfaceScene& surfaces, uint32_t triangle, const dvec3& at,
              const reference::SceneTriangle& whole, double chance) {
-    if (whole.opaque) return true;
-    const auto& instances = surfaces.instances();
-    const auto after = std::upper_bound(
-        instances.begin(), instances.end(), triangle,
-        [](uint32_t t, const auto& instance) { return t < instance.firstTriangle; });
-    const auto instance = uint32_t(after - instances.begin() - 1);
+    if (whole.opaque()) return true;
+    const uint32_t instance = surfaces.instanceOf(triangle);
     const dvec3 a = whole.corners[1] - whole.corners[0], b = whole.corners[2] - whole.corners[0];
     const dvec3 normal = glm::cross(a, b), off = at - whole.corners[0];
     const double squared = glm::dot(normal, normal);
     if (!(squared > 0)) return false;
     const double u = glm::dot(glm::cross(off, b), normal) / squared;
     const double v = glm::dot(glm::cross(a, off), normal) / squared;
-    return chance <
-           surfaces.coverageAt(instance, triangle - instances[instance].firstTriangle, u, v);
+    return chance < surfaces.coverageAt(
+                        instance, triangle - surfaces.instances()[instance].firstTriangle, u, v);
 }
 
 } // namespace

@@ -100,11 +100,11 @@ bool onDisc(uint point, Disc disc, vec3 at, float radii) {
     if (dot(off, off) > reach * reach) return false;
     VplTriangle triangle = vplTriangles[vplPoints[point].triangle];
     // The inverse of the radius of the circle in a triangle is the sum of the inverses of its heights.
-    float inverse = length(triangle.second.xyz) + length(triangle.third.xyz) + length(triangle.second.xyz + triangle.third.xyz);
+    float inverse = length(triangle.second) + length(triangle.third) + length(triangle.second + triangle.third);
     if (disc.radius * inverse > 1.0) return true;
     vec3 place = at + origin - triangle.corner.xyz;
-    float second = dot(triangle.second.xyz, place);
-    float third = dot(triangle.third.xyz, place);
+    float second = dot(triangle.second, place);
+    float third = dot(triangle.third, place);
     return min(second, third) >= -kSeam && second + third <= 1.0 + kSeam;
 }
 

@@ -13,21 +13,32 @@ const float kVplRounding = 1e-4; // of distances and coordinates: nearer to a pl
 const float kVplSeam = 1e-4;     // barycentric: neighbours overlap, so that nothing comes through between them
 
 const uint kHides = 1u;
-const uint kDoubtful = 2u; // the points are on different sides of the triangle's plane, but it does not lie between them
-const uint kVeils = 4u;    // it does, but rays may pass: hidden is what the map's ray of the very direction did not pass to
+const uint kDoubtful = 2u; // the points are on different sides of the triangle's plane, but it does not lie between them; or rays pass parts of it
+
+/// Of a triangle with holes: is there something where these barycentric coordinates are? Pieces as reference::pieceNumber() has them.
+bool covers(VplTriangle triangle, float second, float third) {
+    vec2 at = clamp(vec2(second, third), 0.0, 1.0) * 8.0;
+    ivec2 cell = min(ivec2(at), 7);
+    cell.x = min(cell.x, 7 - cell.y);
+    vec2 within = at - vec2(cell);
+    bool upper = within.x + within.y > 1.0 && cell.x + cell.y < 7;
+    int piece = cell.y * (16 - cell.y) + 2 * cell.x + int(upper);
+    return (((piece < 32 ? triangle.coversLow : triangle.coversHigh) >> uint(piece & 31)) & 1u) != 0u;
+}
 
 uint triangleSays(uint id, vec3 from, vec3 to, float rounding) {
     if (id == kVplNothing) return 0u;
     VplTriangle triangle = vplTriangles[id];
     float ofFrom = dot(triangle.plane.xyz, from) + triangle.plane.w;
     float ofTo = dot(triangle.plane.xyz, to) + triangle.plane.w;
-    if (min(abs(ofFrom), abs(ofTo)) <= rounding || ofFrom * ofTo >= 0.0) return 0u;
+    bool whole = triangle.corner.w != 0.0;
+    uint misses = whole ? 0u : kDoubtful; // behind what has holes there is more
+    if (min(abs(ofFrom), abs(ofTo)) <= rounding || ofFrom * ofTo >= 0.0) return misses;
     vec3 off = mix(from, to, ofFrom / (ofFrom - ofTo)) - triangle.corner.xyz;
-    float second = dot(triangle.second.xyz, off);
-    float third = dot(triangle.third.xyz, off);
+    float second = dot(triangle.second, off);
+    float third = dot(triangle.third, off);
     bool crossed = min(second, third) > -kVplSeam && second + third < 1.0 + kVplSeam;
-    if (triangle.corner.w == 0.0) return crossed ? kVeils : 0u;
-    return crossed ? kHides : kDoubtful;
+    return crossed && (whole || covers(triangle, second, third)) ? kHides : kDoubtful;
 }
 
 /// To the next node of the tree, unless a leaf whose box the way crosses was found already: its triangle.
@@ -74,11 +85,9 @@ bool vplSees(uint light, vec3 position, vec3 direction, float distance) {
     vec3 from = vplLights[light].position.xyz;
     float rounding = kVplRounding * (distance + length(position));
     uint said = triangleSays(vplTriangleAt(light, texel), from, position, rounding);
-    if ((said & kVeils) != 0u) return false;
     said |= triangleSays(vplTriangleAt(light, texel + ivec2(beside.x, 0)), from, position, rounding) |
             triangleSays(vplTriangleAt(light, texel + ivec2(0, beside.y)), from, position, rounding) |
             triangleSays(vplTriangleAt(light, texel + beside), from, position, rounding); // no loop: llvmpipe counts its rounds
-    said &= kHides | kDoubtful;
     return said == 0u || (said == kDoubtful && !triangleBetween(from, position));
 }
 
