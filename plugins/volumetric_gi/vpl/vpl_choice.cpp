@@ -8,28 +8,18 @@
 #include <tbb/parallel_for.h>
 
 #include "framegraph/hash.h"
+#include "volumetric_gi/vpl/vpl_near.h"
 
 namespace tyndall::volumetric_gi {
 namespace {
 
-/// Of a mean light's worth, so much has each at least: points are few, and may miss what a light gives.
-constexpr double kLeastWorth = 0.1;
+/// Of a mean light's worth, so much has each at least: points are few, and may miss what a light gives. A light that is kept carries three times what it
+/// would without a choice at most.
+constexpr double kLeastWorth = 0.5;
 /// Points that a light is asked about: a ray each.
 constexpr size_t kPointsOfLight = 16;
 /// Chances are met to within this by so many halvings.
 constexpr int kHalvings = 60;
-
-/// As cameraRay() in shaders/common/view.glsl; `ndc`: -1 to 1.
-reference::Ray eyeRay(const gpu::ViewData& view, const dvec2& ndc) {
-    const dmat4 renderFromClip(view.renderFromClip);
-    const dvec3 eye(view.cameraPosition), forward(view.cameraForward);
-    if (view.flags & gpu::kViewOrthographic) {
-        const dvec4 point = renderFromClip * dvec4(ndc, 1, 1);
-        const dvec3 fromEye = dvec3(point) / point.w - eye;
-        return {eye + fromEye - forward * glm::dot(fromEye, forward), forward};
-    }
-    return {eye, glm::normalize(dvec3(renderFromClip * dvec4(ndc, 0, 1)))};
-}
 
 /// What a light gives to a point, watts per square metre and the like: only ratios count.
 double givenTo(const SeenPoint& point, const reference::WalkVertex& light,
@@ -52,6 +42,38 @@ double givenTo(const SeenPoint& point, const reference::WalkVertex& light,
     return intensity * cosine * through / std::max(distance * distance, least * least);
 }
 
+/// Along Morton's curve; `place`: in the unit cube.
+uint32_t mortonCode(const dvec3& place) {
+    constexpr int kBits = 10;
+    uint32_t code = 0;
+    for (int axis = 0; axis < 3; ++axis) {
+        const auto along = uint32_t(std::clamp(place[axis], 0.0, 1.0) * ((1 << kBits) - 1));
+        for (int bit = 0; bit < kBits; ++bit) code |= ((along >> bit) & 1u) << (3 * bit + axis);
+    }
+    return code;
+}
+
+/// Which lights to keep, each with the chance min(1, scale · worth): a light is where the sum of chances reaches a whole number, light by light along a
+/// curve through space, so that each region keeps as many as it should to within one.
+std::vector<bool> inTurn(const std::vector<const reference::WalkVertex*>& lights,
+                         const std::vector<double>& worth, double scale, uint64_t seed) {
+    Bounds around;
+    for (const auto* light : lights) around.include(light->position);
+    const dvec3 inverse = 1.0 / glm::max(around.extent(), dvec3(1e-30));
+    std::vector<std::pair<uint32_t, size_t>> order(lights.size());
+    for (size_t i = 0; i < lights.size(); ++i)
+        order[i] = {mortonCode((lights[i]->position - around.minimum) * inverse), i};
+    std::sort(order.begin(), order.end());
+    std::vector<bool> keeps(lights.size());
+    double sum = double(reference::mixBits(seed * 0x9e3779b97f4a7c15ull) >> 11) * 0x1p-53;
+    for (const auto& [code, i] : order) {
+        const double before = std::floor(sum);
+        sum += std::min(1.0, scale * worth[i]);
+        keeps[i] = std::floor(sum) > before;
+    }
+    return keeps;
+}
+
 } // namespace
 
 std::vector<SeenPoint> seenPoints(const gpu::ViewData& view,
@@ -64,10 +86,9 @@ std::vector<SeenPoint> seenPoints(const gpu::ViewData& view,
     std::vector<reference::EmittedLight> emitted;
     for (uint32_t i = 0; i < count; ++i) {
         reference::Sampler sampler(seed, 1, i);
-        const reference::Ray ray = eyeRay(view, 2.0 * sampler.next2() - 1.0);
-        const reference::RayHit hit =
-            surfaces.intersect(ray, double(view.cameraPosition.w), reference::kInfinity,
-                               reference::RayKind::Camera, sampler.bits());
+        const auto [ray, nearest] = eyeRay(view, 2.0 * sampler.next2() - 1.0);
+        const reference::RayHit hit = surfaces.intersect(
+            ray, nearest, reference::kInfinity, reference::RayKind::Camera, sampler.bits());
         segment.start(ray, hit.distance);
         reference::PathWeights weights;
         const auto flight = segment.fly(sampler, weights, there, emitted);
@@ -91,18 +112,21 @@ void chooseLights(Walks& walks, const std::vector<SeenPoint>& seen,
     if (lights.empty() || double(lights.size()) <= wanted) return;
     // Of what a point gets each light has a part: dark places matter as much as bright ones. A light is asked about every so many points alone.
     const size_t stride = std::max<size_t>(seen.size() / kPointsOfLight, 1);
-    std::vector<double> given(seen.size() * lights.size());
+    // Its worth is the root of the sum of their squares: with chances in proportion to that the sum of all points' variances is least.
+    std::vector<std::vector<double>> parts(seen.size());
     tbb::parallel_for(size_t(0), seen.size(), [&](size_t p) {
-        double* of = &given[p * lights.size()];
         double sum = 0;
         reference::Sampler sampler(seed, 2, uint32_t(p));
         for (size_t i = p % stride; i < lights.size(); i += stride)
-            sum += of[i] = givenTo(seen[p], *lights[i], surfaces, media, least, sampler);
-        for (size_t i = p % stride; i < lights.size() && sum > 0; i += stride) of[i] /= sum;
+            sum += parts[p].emplace_back(
+                givenTo(seen[p], *lights[i], surfaces, media, least, sampler));
+        for (double& part : parts[p]) part = sum > 0 ? part / sum : 0;
     });
     std::vector<double> worth(lights.size(), 0);
     for (size_t p = 0; p < seen.size(); ++p)
-        for (size_t i = 0; i < lights.size(); ++i) worth[i] += given[p * lights.size() + i];
+        for (size_t k = 0; k < parts[p].size(); ++k)
+            worth[p % stride + k * stride] += parts[p][k] * parts[p][k];
+    for (double& w : worth) w = std::sqrt(w);
     const double mean = std::accumulate(worth.begin(), worth.end(), 0.0) / double(lights.size());
     for (double& w : worth) w += mean > 0 ? kLeastWorth * mean : 1;
     // The chance is min(1, scale · worth): the scale with which as many are kept as are wanted.
@@ -116,14 +140,13 @@ void chooseLights(Walks& walks, const std::vector<SeenPoint>& seen,
         const double middle = 0.5 * (low + high);
         (kept(middle) < wanted ? low : high) = middle;
     }
+    const std::vector<bool> keeps = inTurn(lights, worth, high, seed);
     size_t number = 0;
     for (auto& walk : walks.vertices) {
         auto out = walk.begin();
         for (reference::WalkVertex& light : walk) {
             const double chance = std::min(1.0, high * worth[number]);
-            const double u =
-                double(reference::mixBits(seed * 0x9e3779b97f4a7c15ull + number++) >> 11) * 0x1p-53;
-            if (!(u < chance)) continue;
+            if (!keeps[number++]) continue;
             light.power /= chance;
             *out++ = light;
         }

@@ -12,6 +12,20 @@ vec2 vplDepthRange(vec3 position, VplParams params) {
     return vec2(length(max(max(low, high), vec3(0.0))), length(max(abs(low), abs(high))));
 }
 
+/// Where step number `step` begins, of the range: what lies first along a way matters most, for behind it less comes through.
+float vplDepthStart(uint step) {
+    float part = float(step) / float(kVplDepthSteps);
+    return part * part;
+}
+
+/// The step within which a place of the range lies, and how far within.
+uint vplDepthStep(float place, out float part) {
+    uint step = min(uint(sqrt(place) * float(kVplDepthSteps)), kVplDepthSteps - 1u);
+    float start = vplDepthStart(step);
+    part = (place - start) / (vplDepthStart(step + 1u) - start);
+    return step;
+}
+
 const float kVplFarFromGrids = 1.3; // radii of the ball around the grids' box
 
 /// A light that is farther from the grids maps the cone in which they lie, another one all directions. False: the latter.

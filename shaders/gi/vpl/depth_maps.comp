@@ -18,12 +18,12 @@ void main() {
     vec2 place = (vec2(texel % vpl.depthSide, texel / vpl.depthSide) + 0.5) / float(vpl.depthSide);
     vec3 direction = vplDepthDirection(position, place, vpl);
     vec2 range = vplDepthRange(position, vpl);
-    float width = (range.y - range.x) / float(kVplDepthSteps);
     vec3 depth = vec3(0.0);
     uint first = (light * vpl.depthSide * vpl.depthSide + texel) * kVplDepthSteps;
     for (uint step = 0u; step < kVplDepthSteps; ++step) {
-        float start = range.x + float(step) * width;
-        depth += gridOpticalDepth(position, direction, start, start + width);
+        vec2 part = vec2(vplDepthStart(step), vplDepthStart(step + 1u));
+        vec2 ends = mix(range.xx, range.yy, part);
+        depth += gridOpticalDepth(position, direction, ends.x, ends.y);
         vec3 stored = min(depth, vec3(6e4)); // of half precision
         vplDepths[first + step] = uvec2(packHalf2x16(stored.rg), packHalf2x16(vec2(stored.b, 0.0)));
     }

@@ -1,4 +1,4 @@
-// Optical depth between a virtual light and a point: of grids from the light's own map, by direction and in equal steps of distance;
+// Optical depth between a virtual light and a point: of grids from the light's own map, by direction and distance;
 // of other media in closed form.
 #ifndef TYNDALL_GI_VPL_OPTICAL_DEPTH
 #define TYNDALL_GI_VPL_OPTICAL_DEPTH
@@ -16,9 +16,8 @@ vec3 vplDepthAt(uint column, uint step) {
 vec3 vplGridDepth(uint light, vec3 direction, float distance) {
     float side = float(vpl.depthSide);
     vec2 range = vplDepthRange(vplLights[light].position.xyz, vpl);
-    float along = clamp((distance - range.x) / (range.y - range.x), 0.0, 1.0) * float(kVplDepthSteps);
-    uint step = min(uint(along), kVplDepthSteps - 1u);
-    float part = along - float(step);
+    float part;
+    uint step = vplDepthStep(clamp((distance - range.x) / (range.y - range.x), 0.0, 1.0), part);
     vec2 at = clamp(vplDepthPlace(vplLights[light].position.xyz, direction, vpl) * side - 0.5, vec2(0.0), vec2(side - 1.0));
     uvec2 low = uvec2(at);
     uvec2 high = min(low + 1u, uvec2(vpl.depthSide - 1u));
