@@ -15,6 +15,8 @@ PathSettings directOnly(TermSet terms) {
 
 /// Compensation far from its beginning carries little: from the third vertex on it ends by chance.
 constexpr double kLeastSurvival = 0.1;
+/// Of the distance to a surface that an eye ray passes: on from behind it.
+constexpr double kPassed = 1e-6;
 
 } // namespace
 
@@ -60,6 +62,37 @@ void InstantRadiosity::see(PathHistory history, const dvec3& light) {
     light_->add(term, light);
 }
 
+double InstantRadiosity::clampDistanceAt(const dvec3& position) const {
+    return settings_.clampDistance *
+           std::max(1.0, glm::length(position - settings_.middle) / settings_.radius);
+}
+
+/// A path's first random numbers: which channel it follows.
+void InstantRadiosity::begin(Sampler& sampler, TermLight& light) {
+    ++counts_.paths;
+    sampler_ = &sampler;
+    light_ = &light;
+    history_ = {};
+    weights_ = {};
+}
+
+void InstantRadiosity::traceWalk() {
+    walker_.trace(*sampler_, walk_);
+    for (WalkVertex& vertex : walk_)
+        vertex.point.surface.roughness =
+            std::max(vertex.point.surface.roughness, settings_.leastRoughness);
+}
+
+/// The vertex where a ray meets a surface.
+void InstantRadiosity::enter(const Ray& ray, const RayHit& hit, Vertex& vertex) const {
+    vertex.before = ray.direction;
+    vertex.point = scene_.surfaces->pointAt(ray, hit);
+    Surface& surface = vertex.point.surface;
+    surface.roughness = std::max(surface.roughness, settings_.leastRoughness);
+    vertex.position = vertex.point.position;
+    vertex.bsdf.emplace(surface, -ray.direction);
+}
+
 /// Follows the ray to where it is scattered. False where it leaves the scene.
 bool InstantRadiosity::nextVertex(Ray& ray, double nearest, RayKind kind, Vertex& vertex) {
     ++counts_.segments;
@@ -70,18 +103,50 @@ bool InstantRadiosity::nextVertex(Ray& ray, double nearest, RayKind kind, Vertex
         flight = segment_.fly(*sampler_, weights_, mediumPoint_, emitted_);
     }
     if ((!flight.collided && !hit.found()) || weights_.throughput == dvec3(0)) return false;
-    vertex.before = ray.direction;
-    vertex.bsdf.reset();
     if (flight.collided) {
+        vertex.before = ray.direction;
+        vertex.bsdf.reset();
         vertex.position = ray.at(flight.distance);
         history_.add(Scattering::Medium);
         return true;
     }
-    vertex.point = scene_.surfaces->pointAt(ray, hit);
+    enter(ray, hit, vertex);
     if (vertex.point.unlit) return false;
-    vertex.position = vertex.point.position;
-    vertex.bsdf.emplace(vertex.point.surface, -ray.direction);
     history_.add(Scattering::Surface);
+    return true;
+}
+
+/// On to where light comes from that is too near to be left to virtual lights, with the part of it that the bound takes away. False where there is none.
+bool InstantRadiosity::nearVertex(Vertex& vertex) {
+    const double u = sampler_->next1();
+    dvec3 direction;
+    if (vertex.onSurface()) {
+        const BsdfSample sample = vertex.bsdf->sample(u, sampler_->next2());
+        weights_.throughput *= sample.weight;
+        direction = sample.direction;
+    } else {
+        direction = mediumPoint_.samplePhase(weights_.hero, vertex.before, u, sampler_->next2());
+        const dvec3 density = mediumPoint_.phase(vertex.before, direction);
+        weights_.scale(density, density);
+    }
+    if (weights_.throughput == dvec3(0)) return false;
+    const Vertex from = vertex;
+    Ray ray = from.rayTowards(direction);
+    if (!nextVertex(ray, 0, RayKind::Path, vertex)) return false;
+    const dvec3 way = vertex.position - from.position;
+    const double distance = clampDistanceAt(from.position), bound = 1 / (distance * distance);
+    const double cosines = from.cosine(direction) * vertex.cosine(-direction);
+    const double missing =
+        cosines > 0 ? std::max(0.0, 1 - bound * glm::dot(way, way) / cosines) : 0;
+    weights_.throughput *= missing;
+    return weights_.throughput != dvec3(0);
+}
+
+bool InstantRadiosity::survives() {
+    if (history_.count() < 3) return true;
+    const double chance = std::clamp(maximumOf(weights_.carried()), kLeastSurvival, 1.0);
+    if (!(sampler_->random() < chance)) return false;
+    weights_.throughput /= chance;
     return true;
 }
 
@@ -93,53 +158,52 @@ void InstantRadiosity::trace(const CameraRays::CameraRay& start, Sampler& sample
         direct_.trace(start, apart, light);
     }
     if (!(settings_.terms & ~kDirectTerms)) return;
-    ++counts_.paths;
-    sampler_ = &sampler;
-    light_ = &light;
-    walker_.trace(sampler, walk_);
-    weights_ = {};
+    begin(sampler, light);
+    traceWalk();
     if (!scene_.media->grey()) weights_.hero = std::min(2, int(3 * sampler.next1()));
-    history_ = {};
     Ray ray = start.ray;
     Vertex vertex;
     if (!nextVertex(ray, start.nearest, RayKind::Camera, vertex)) return;
-    while (true) {
-        gatherWalk(vertex);
-        if (!settings_.compensate || !(settings_.clampDistance > 0)) return;
-        // On to where light comes from that is too near to be left to virtual lights.
-        const double u = sampler.next1();
-        dvec3 direction;
-        if (vertex.onSurface()) {
-            const BsdfSample sample = vertex.bsdf->sample(u, sampler.next2());
-            weights_.throughput *= sample.weight;
-            direction = sample.direction;
-        } else {
-            direction = mediumPoint_.samplePhase(weights_.hero, vertex.before, u, sampler.next2());
-            const dvec3 density = mediumPoint_.phase(vertex.before, direction);
-            weights_.scale(density, density);
-        }
-        if (weights_.throughput == dvec3(0)) return;
-        const Vertex from = vertex;
-        ray = from.rayTowards(direction);
-        if (!nextVertex(ray, 0, RayKind::Path, vertex)) return;
-        const dvec3 way = vertex.position - from.position;
-        const double bound = 1 / (settings_.clampDistance * settings_.clampDistance);
-        const double cosines = from.cosine(direction) * vertex.cosine(-direction);
-        const double missing =
-            cosines > 0 ? std::max(0.0, 1 - bound * glm::dot(way, way) / cosines) : 0;
-        weights_.throughput *= missing;
-        if (weights_.throughput == dvec3(0)) return;
+    gatherWalk(vertex);
+    if (!settings_.compensate || !(settings_.clampDistance > 0)) return;
+    while (nearVertex(vertex)) {
         gatherLights(vertex);
-        if (history_.count() < 3) continue;
-        const double chance = std::clamp(maximumOf(weights_.carried()), kLeastSurvival, 1.0);
-        if (!(sampler.random() < chance)) return;
-        weights_.throughput /= chance;
+        if (!survives()) return;
+        gatherWalk(vertex);
     }
+}
+
+const Surface* InstantRadiosity::traceBetweenSurfaces(const CameraRays::CameraRay& start,
+                                                      Sampler& sampler, TermLight& light) {
+    begin(sampler, light);
+    if (!scene_.media->grey()) weights_.hero = std::min(2, int(3 * sampler.next1()));
+    RayHit hit;
+    double nearest = start.nearest;
+    do {
+        hit = scene_.surfaces->intersect(start.ray, nearest, kInfinity, RayKind::Camera,
+                                         sampler.bits());
+        if (!hit.found()) return nullptr;
+        nearest = hit.distance * (1 + kPassed);
+    } while (scene_.surfaces->instances()[hit.instance].material->alphaMode == AlphaMode::Blend);
+    Vertex vertex;
+    enter(start.ray, hit, vertex);
+    if (vertex.point.unlit) return nullptr;
+    seen_ = vertex.point.surface;
+    history_.add(Scattering::Surface);
+    if (!nearVertex(vertex) || !vertex.onSurface()) return &seen_;
+    traceWalk();
+    do {
+        gatherLights(vertex);
+        if (!survives()) break;
+        gatherWalk(vertex);
+    } while (nearVertex(vertex));
+    return &seen_;
 }
 
 /// Light of all vertices of the walk, with the geometry term held at the bound.
 void InstantRadiosity::gatherWalk(const Vertex& vertex) {
-    const double least = settings_.clampDistance * settings_.clampDistance;
+    const double distanceHeld = clampDistanceAt(vertex.position),
+                 least = distanceHeld * distanceHeld;
     for (const WalkVertex& source : walk_) {
         const dvec3 way = source.position - vertex.position;
         const double squared = glm::dot(way, way);

@@ -17,6 +17,10 @@ struct InstantRadiositySettings {
     double clampDistance =
         0.1; // metres: b = 1/clampDistance²; 0: no bound; infinite: nothing is left to virtual lights
     bool compensate = true; // false: what the bound takes away is missing
+    // Outside of a ball the bound's distance grows in proportion to that from its middle.
+    dvec3 middle{0};
+    double radius = kInfinity; // metres
+    double leastRoughness = 0; // smoother surfaces are taken for as rough as that
 };
 
 class InstantRadiosity {
@@ -25,14 +29,25 @@ public:
                      const InstantRadiositySettings& settings);
 
     void trace(const CameraRays::CameraRay& start, Sampler& sampler, TermLight& light);
+    /// Nothing but what the bound takes away between the surface that an eye ray meets first and other surfaces: as it leaves there towards the eye,
+    /// without media on that way. Surfaces of partial coverage (BLEND) are passed by the eye ray.
+    /// The eye's surface, or null where there is none; until the next path.
+    const Surface* traceBetweenSurfaces(const CameraRays::CameraRay& start, Sampler& sampler,
+                                        TermLight& light);
     [[nodiscard]] PathCounts counts() const;
 
 private:
     struct Vertex;
+    void begin(Sampler& sampler, TermLight& light);
+    void traceWalk();
+    void enter(const Ray& ray, const RayHit& hit, Vertex& vertex) const;
     bool nextVertex(Ray& ray, double nearest, RayKind kind, Vertex& vertex);
+    bool nearVertex(Vertex& vertex);
+    bool survives();
     void gatherWalk(const Vertex& vertex);
     void gatherLights(const Vertex& vertex);
     void see(PathHistory history, const dvec3& light);
+    [[nodiscard]] double clampDistanceAt(const dvec3& position) const;
 
     const TracerScene& scene_;
     InstantRadiositySettings settings_;
@@ -46,6 +61,7 @@ private:
     TermLight* light_ = nullptr;
     PathWeights weights_;
     PathHistory history_;
+    Surface seen_; // that the eye ray met
     MediumPoint mediumPoint_;
     std::vector<EmittedLight> emitted_;
     LightChoice choice_;

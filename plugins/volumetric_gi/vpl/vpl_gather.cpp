@@ -246,9 +246,13 @@ fg::BufferHandle addSplattedMaps(fg::FrameGraph& graph, const VplBuffers& buffer
 } // namespace
 
 VplBuffers readVpls(fg::Builder& builder, const VplBuffers& buffers) {
-    return {builder.read(buffers.lights), builder.read(buffers.walks),
-            builder.read(buffers.maps),   builder.read(buffers.triangles),
-            builder.read(buffers.tree),   builder.read(buffers.depths)};
+    return {builder.read(buffers.lights),
+            builder.read(buffers.walks),
+            builder.read(buffers.maps),
+            builder.read(buffers.triangles),
+            builder.read(buffers.tree),
+            builder.read(buffers.depths),
+            {}};
 }
 
 VplBuffers addVplUpload(fg::FrameGraph& graph, const plugin::FrameInputs& inputs,
@@ -261,6 +265,7 @@ VplBuffers addVplUpload(fg::FrameGraph& graph, const plugin::FrameInputs& inputs
     buffers.walks = add("gi.vpl.walks", upload.set->walks, upload.mapsKey);
     buffers.triangles = add("gi.vpl.triangles", *upload.triangles, upload.trianglesKey);
     buffers.tree = add("gi.vpl.tree", *upload.tree, upload.trianglesKey);
+    buffers.near = add("gi.vpl.near", *upload.near, upload.nearKey);
     if (upload.points->points.empty()) {
         buffers.maps = add("gi.vpl.maps", *upload.maps, upload.mapsKey);
     } else {
@@ -313,6 +318,7 @@ fg::TextureHandle addVplSurfaces(fg::FrameGraph& graph, const plugin::FrameInput
                     declare(builder, data, inputs, lights, gather, gather.surfaceFactor);
                     readSurfaces(builder, data, inputs);
                     data.before = builder.read(squares);
+                    data.lights.near = builder.read(lights.near);
                     if (inputs.transmittance)
                         data.transmittance = builder.read(inputs.transmittance);
                     data.result = builder.create("gi.vpl.surfaceRadiance", picture(inputs, 1));
@@ -322,6 +328,7 @@ fg::TextureHandle addVplSurfaces(fg::FrameGraph& graph, const plugin::FrameInput
                     bindSurfaces(command, data.gbuffer);
                     command.params(data.params, "Vpl")
                         .bind("squares", data.before)
+                        .bind("VplNear", data.lights.near)
                         .bind("surfaceRadiance", data.result)
                         .bind("transmittance",
                               data.transmittance ? data.transmittance : data.before)

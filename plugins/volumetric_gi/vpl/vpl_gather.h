@@ -12,6 +12,7 @@ namespace tyndall::volumetric_gi {
 struct VplBuffers {
     fg::BufferHandle lights, walks, maps, triangles, tree;
     fg::BufferHandle depths; // of grids; null: without
+    fg::BufferHandle near;   // what the bound takes away between surfaces, square by square
 };
 
 /// Declares that a pass reads them; the result is what bindVpls() takes.
@@ -36,7 +37,8 @@ struct VplUpload {
     const SurfacePoints* points = nullptr;       // not empty: they are to be splatted into maps
     const std::vector<gpu::VplTriangle>* triangles = nullptr;
     const std::vector<reference::TreeNode>* tree = nullptr;
-    uint64_t lightsKey = 0, mapsKey = 0, trianglesKey = 0;
+    const std::vector<vec4>* near = nullptr; // empty: without
+    uint64_t lightsKey = 0, mapsKey = 0, trianglesKey = 0, nearKey = 0;
 };
 
 /// How lights are gathered.

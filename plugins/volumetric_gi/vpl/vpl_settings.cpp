@@ -36,6 +36,9 @@ const SettingDesc kVplSettings[] = {
     TYNDALL_ENUM(
         VplSettings, compensation, "gi.vpl.compensation", "Compensation", kCompensationNames, 2,
         "What the bound takes away: missing, made up for as if light were even, or gathered from a point near by."),
+    TYNDALL_INT(
+        VplSettings, nearPaths, "gi.vpl.nearPaths", "Paths between surfaces", "", 0, 1024, 1,
+        "In averaged frames, with traced compensation: paths on the processor for each square of surfaces, which bring what the bound takes away between surfaces; 0: it is missing."),
     TYNDALL_ENUM(
         VplSettings, march, "gi.vpl.march", "March resolution", kMarchNames, 1,
         "Rays along which media show virtual lights: for every pixel, or for squares of 2, 4 or 8 pixels a side."),
@@ -77,6 +80,10 @@ constexpr PresetEntry kVplPresets[] = {
     {Quality::Medium, "gi.vpl.samples", "16"},
     {Quality::High, "gi.vpl.samples", "24"},
     {Quality::Ultra, "gi.vpl.samples", "32"},
+    {Quality::Low, "gi.vpl.nearPaths", "1"},
+    {Quality::Medium, "gi.vpl.nearPaths", "1"},
+    {Quality::High, "gi.vpl.nearPaths", "2"},
+    {Quality::Ultra, "gi.vpl.nearPaths", "4"},
     {Quality::Low, "gi.vpl.surfaces.resolution", "quarter"},
     {Quality::Medium, "gi.vpl.surfaces.resolution", "half"},
     {Quality::High, "gi.vpl.surfaces.resolution", "half"},

@@ -16,11 +16,15 @@ namespace {
 constexpr double kMostRounds = 40000;
 /// Of walks through the tree of triangles, over its depth; maps leave few doubts, but invocations side by side wait for each other's.
 constexpr double kRoundsOfDoubt = 1;
+/// Behind leaves there is always a doubt.
+constexpr double kRoundsBehindLeaves = 3;
 
 /// That each light gathered takes: its own, one for each medium's optical depth and each phase function, a grid's four texels, and the tree's.
-double roundsOfLight(const MediaResources& media, bool grids, size_t treeSize) {
+double roundsOfLight(const MediaResources& media, bool grids, const TracedScene& scene) {
     return 1 + double(media.count) + (media.phaseGroups > 1 ? double(media.phaseGroups) : 0) +
-           (grids ? 4 : 0) + kRoundsOfDoubt * std::log2(double(treeSize) + 1);
+           (grids ? 4 : 0) +
+           (scene.hasHoles() ? kRoundsBehindLeaves : kRoundsOfDoubt) *
+               std::log2(double(scene.tree().size()) + 1);
 }
 
 /// Of a light that is shown, part of the mean distance between lights.
@@ -30,7 +34,7 @@ constexpr double kBall = 0.08;
 constexpr plugin::Statistic kStatistics[] = {
     {"virtual_lights.gi.vpl", 0}, {"walks.gi.vpl", 1},    {"walks_cut_off.gi.vpl", 2},
     {"walks_traced.gi.vpl", 3},   {"walks_ms.gi.vpl", 4}, {"choice_ms.gi.vpl", 5},
-    {"maps_ms.gi.vpl", 6},
+    {"maps_ms.gi.vpl", 6},        {"near_ms.gi.vpl", 7},  {"near_nonfinite.gi.vpl", 8},
 };
 
 /// Adds the time that it lives to a number of milliseconds.
@@ -54,7 +58,7 @@ private:
 constexpr uint32_t kPointSets = 8;
 
 /// With which it is found out what lights matter.
-constexpr uint32_t kSeenPoints = 64;
+constexpr uint32_t kSeenPoints = 256;
 
 /// Between lights, metres: (V/M)^(1/3) (transport.md, 5.1 i) of the M lights in the content and the box around them; of all, where none are there.
 /// `times`: so many times as many lights as are given.
@@ -142,6 +146,31 @@ void VplTechnique::choose(const plugin::FrameInputs& inputs, const WalkOrder& or
                  meanDistanceOf(lights, scene_.content(), 1.0 / candidates), seed);
 }
 
+/// Paths on the processor: in averaged frames alone, for they are noise that has to be averaged. Not where walks go through guesses of the media.
+bool VplTechnique::makesUpBetweenSurfaces(const plugin::FrameInputs& inputs) const {
+    return settings_.nearPaths > 0 && settings_.surfaceClamp > 0 && settings_.fromSurfaces &&
+           settings_.compensation == int32_t(gpu::kVplTraced) &&
+           settings_.show != int32_t(gpu::kVplShowLost) && converges(inputs) && !scene_.guessed() &&
+           (inputs.terms & kIndirectOnSurfaces) != 0;
+}
+
+void VplTechnique::makeNear(const plugin::FrameInputs& inputs) {
+    const gpu::VplParams& params = gather_.params;
+    near_ = {};
+    if (params.nearLight == 0) return;
+    NearOrder order;
+    order.factor = gather_.surfaceFactor;
+    order.paths = uint32_t(settings_.nearPaths);
+    order.first = inputs.view.data.frameIndex * order.paths;
+    order.settings.terms = inputs.terms & kIndirectOnSurfaces;
+    order.settings.clampDistance = std::sqrt(double(params.surfaceClampSquared));
+    order.settings.middle = dvec3(params.content);
+    if (params.content.w > 0) order.settings.radius = 1 / std::sqrt(double(params.content.w));
+    order.settings.leastRoughness = double(params.leastRoughness);
+    const Stopwatch watch(times_.near);
+    near_ = lostBetweenSurfaces(inputs.view.data, scene_.scene(), scene_.emission(), order);
+}
+
 VplGather VplTechnique::gather(const plugin::FrameInputs& inputs) const {
     VplGather gather;
     gpu::VplParams& params = gather.params;
@@ -150,8 +179,8 @@ VplGather VplTechnique::gather(const plugin::FrameInputs& inputs) const {
     Bounds grids;
     for (const reference::MediumSource& medium : scene_.media().media())
         if (medium.isGrid()) grids.include(medium.bounds());
-    const double rounds = roundsOfLight(inputs.media, !grids.empty(), scene_.tree().size()) *
-                          double(params.lightCount);
+    const double rounds =
+        roundsOfLight(inputs.media, !grids.empty(), scene_) * double(params.lightCount);
     const auto classes = [&](int32_t wanted, double points) {
         const double least = rounds * points / kMostRounds;
         return uint32_t(std::clamp(std::max(double(wanted), std::ceil(least)), 1.0,
@@ -169,7 +198,13 @@ VplGather VplTechnique::gather(const plugin::FrameInputs& inputs) const {
     // Lights in a lobe, whose solid angle goes with the fourth power of roughness, become more as frames come, though it narrows; so may what is gathered near
     // by. Between surfaces the bound may not: the distance d below which one light in d² outshines the average must fall slower than the root of the frames.
     const double finer = std::pow(frames, 1.0 / 6);
-    params.surfaceClampSquared = squared(mean * double(settings_.surfaceClamp));
+    params.mediumClampSquared = squared(mean * double(settings_.surfaceClamp));
+    // What paths make up for may stay as noisy as it is welcome.
+    params.nearLight = makesUpBetweenSurfaces(inputs) ? 1 : 0;
+    params.surfaceClampSquared = params.nearLight != 0
+                                     ? squared(meanDistanceOf(set_.positions, scene_.content(), 1) *
+                                               double(settings_.surfaceClamp) / finer)
+                                     : params.mediumClampSquared;
     params.leastRoughness = float(double(settings_.roughness) / finer);
     params.relaxed = float(double(settings_.relaxed) * finer);
     const Bounds& content = scene_.content();
@@ -199,9 +234,12 @@ plugin::FrameOutputs VplTechnique::addPasses(fg::FrameGraph& graph,
     }
     makeLights(inputs);
     gather_ = gather(inputs);
+    makeNear(inputs);
+    const uint64_t nearKey =
+        near_.squares.empty() ? 0 : fg::mixHash(lightsKey_, inputs.view.data.frameIndex);
     buffers_ = addVplUpload(graph, inputs,
                             {&set_, &maps_, &points_, &scene_.triangles(), &scene_.tree(),
-                             lightsKey_, walksKey_, scene_.surfacesKey()},
+                             &near_.squares, lightsKey_, walksKey_, scene_.surfacesKey(), nearKey},
                             gather_.params);
     plugin::FrameOutputs outputs;
     if (inputs.terms & kIndirectOnSurfaces)
@@ -224,7 +262,9 @@ fg::BufferHandle VplTechnique::addStatistics(fg::FrameGraph& graph) {
                    float(walksTraced_),
                    times_.walks,
                    times_.choice,
-                   times_.maps};
+                   times_.maps,
+                   times_.near,
+                   float(near_.nonFinite)};
     struct Data {
         fg::BufferHandle values;
         const float* data;

@@ -8,6 +8,7 @@
 
 #include "volumetric_gi/vpl/traced_scene.h"
 #include "volumetric_gi/vpl/vpl_gather.h"
+#include "volumetric_gi/vpl/vpl_near.h"
 #include "volumetric_gi/vpl/vpl_settings.h"
 #include "volumetric_gi/vpl/vpl_show.h"
 
@@ -28,6 +29,8 @@ private:
     fg::BufferHandle addStatistics(fg::FrameGraph& graph);
     void makeLights(const plugin::FrameInputs& inputs);
     void choose(const plugin::FrameInputs& inputs, const WalkOrder& order, uint32_t candidates);
+    [[nodiscard]] bool makesUpBetweenSurfaces(const plugin::FrameInputs& inputs) const;
+    void makeNear(const plugin::FrameInputs& inputs);
     [[nodiscard]] VplGather gather(const plugin::FrameInputs& inputs) const;
 
     VplSettings settings_{};
@@ -38,14 +41,15 @@ private:
     Walks walks_;                // through guessed media, where those are
     uint64_t lightsKey_ = 0, walksKey_ = 0;
     uint32_t walksTraced_ = 0; // in this frame
+    NearLight near_;           // what the bound takes away between surfaces
     struct {
-        float walks = 0, choice = 0, maps = 0;
+        float walks = 0, choice = 0, maps = 0, near = 0;
     } times_; // of this frame, milliseconds
     std::string said_;
     VplBuffers buffers_; // of this frame
     VplGather gather_;
     VplGathered gathered_;
-    std::array<float, 7> statistics_{};
+    std::array<float, 9> statistics_{};
 };
 
 } // namespace tyndall::volumetric_gi

@@ -10,7 +10,7 @@ namespace tyndall::volumetric_gi {
 
 struct VplSet {
     std::vector<gpu::VplData> lights; // walk by walk
-    std::vector<uint32_t> walks;  // where each that left a light begins, and where the last ends
+    std::vector<uint32_t> walks; // where each that left a light begins, and where the last ends
     std::vector<gpu::VplPlace> places;
     std::vector<dvec3> positions; // of the lights, as exactly as they are known
     std::vector<double> margins;  // metres by which rays start off the surface; 0 in media

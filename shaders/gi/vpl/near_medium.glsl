@@ -19,7 +19,7 @@ vec3 lightInMedium(uint light, vec3 position, vec3 direction, Segment s, float c
     bool onSurface = vplLights[light].position.w < 0.0;
     float cosines = onSurface ? dot(vplLights[light].normal.xyz, -towards) : 1.0;
     // What nothing makes up for is held less.
-    float perArea = vplInverseSquare(squared, cosines, onSurface ? min(vplClampScale(position) * vpl.surfaceClampSquared, clampSquared) : clampSquared);
+    float perArea = vplInverseSquare(squared, cosines, onSurface ? min(vplClampScale(position) * vpl.mediumClampSquared, clampSquared) : clampSquared);
     vec3 depth = vplOpticalDepth(light, position, towards, distance);
     return scatteredLight(s, dot(towards, direction), depth) * intensity * perArea;
 }

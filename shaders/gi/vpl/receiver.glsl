@@ -53,4 +53,13 @@ vec3 coloured(Receiver r, SurfaceLight light) {
     return (1.0 - metallic) * r.brdf.baseColor * light.diffuse + straight * light.specular + mix(r.brdf.specular, 1.0, metallic) * light.grazing;
 }
 
+const float kLeastReflectance = 1e-3; // black surfaces mirror no less
+
+/// Of light from all around, about: what neighbours do not share. As the processor has it (vpl_near.cpp).
+vec3 reflectance(Receiver r) {
+    float metallic = r.brdf.metallic;
+    vec3 base = r.brdf.baseColor;
+    return max((1.0 - metallic) * (base + kDielectricF0 * r.brdf.specular) + metallic * base, vec3(kLeastReflectance));
+}
+
 #endif

@@ -27,7 +27,7 @@ void main() {
     SurfaceLight light;
     if (there.w == 0.0) light = lightAt(fills ? square : marchedPixel(square, params, textureSize(gbufferDepth, 0)), uvec2(square), r);
     if (fills) {
-        if (there.w == 0.0) there = vec4(coloured(r, light), 1.0);
+        if (there.w == 0.0) there = vec4(there.rgb + coloured(r, light), 1.0);
         imageStore(surfaceLight, square, there);
     } else {
         imageStore(surfaceLight, square, vec4(light.diffuse, 1.0));

@@ -8,7 +8,8 @@ layout(local_size_x = 8, local_size_y = 8) in;
 layout(std140) uniform Params { MarchParams params; };
 uniform sampler2D squares; // the parts of SurfaceLight side by side
 uniform sampler2D transmittance; // of media in view
-layout(rgba32f) writeonly uniform image2D surfaceRadiance; // w: 0 where it is to be gathered
+layout(std430) readonly buffer VplNear { vec4 vplNear[]; }; // that the bound takes away between surfaces, by square: nits over reflectance()
+layout(rgba32f) writeonly uniform image2D surfaceRadiance; // w: 0 where what is there is not all yet
 
 const float kFar = 0.1; // of the distance to the eye: on a surface that is seen at a grazing angle neighbouring pixels lie far apart
 
@@ -31,6 +32,8 @@ float surfaceLikeness(Receiver r, Receiver other, float distance) {
     return f4 * f4 / (1.0 + offPlane / params.depthTolerance) / (1.0 + dot(way, way) / (kFar * kFar));
 }
 
+vec3 nearLightOf(ivec2 square, int squaresAcross) { return vpl.nearLight != 0u ? vplNear[square.y * squaresAcross + square.x].rgb : vec3(0.0); }
+
 void addSquare(inout SurfaceLight sum, ivec2 square, ivec2 right, float weight) {
     sum.diffuse += weight * texelFetch(squares, square, 0).rgb;
     sum.specular += weight * texelFetch(squares, square + right, 0).rgb;
@@ -49,23 +52,29 @@ void main() {
     ivec2 size = textureSize(squares, 0) / ivec2(3, 1);
     ivec2 right = ivec2(size.x, 0);
     SurfaceLight light = kDark;
+    vec3 near = vec3(0.0);
     float total = 0.0;
     float best = params.factor > 1u ? 0.0 : 1.0;
     if (params.factor > 1u) {
         for (int i = 0; i < 4; ++i) {
-            NearRay near = nearRay(i, pixel, params, size, textureSize(gbufferDepth, 0));
+            NearRay ray = nearRay(i, pixel, params, size, textureSize(gbufferDepth, 0));
             Receiver other;
-            if (!receiverAt(near.pixel, other)) continue;
-            float like = surfaceLikeness(r, other, distance) / (1.0 + depthApart(pixel, near.pixel) / kDeep);
-            float weight = rayWeight(like, near.share);
+            if (!receiverAt(ray.pixel, other)) continue;
+            float like = surfaceLikeness(r, other, distance) / (1.0 + depthApart(pixel, ray.pixel) / kDeep);
+            float weight = rayWeight(like, ray.share);
             best = max(best, like);
             total += weight;
-            addSquare(light, near.coarse, right, weight);
+            addSquare(light, ray.coarse, right, weight);
+            near += weight * nearLightOf(ray.coarse, size.x);
         }
         total = max(total, 1e-30);
+        near /= total;
         light = SurfaceLight(light.diffuse / total, light.specular / total, light.grazing / total);
     } else {
         addSquare(light, pixel, right, 1.0);
+        near = nearLightOf(pixel, size.x);
     }
-    imageStore(surfaceRadiance, pixel, best < params.refineWeight ? vec4(0.0) : vec4(coloured(r, light), 1.0));
+    vec4 radiance = best < params.refineWeight ? vec4(0.0) : vec4(coloured(r, light), 1.0);
+    radiance.rgb += near * reflectance(r);
+    imageStore(surfaceRadiance, pixel, radiance);
 }

@@ -1,0 +1,66 @@
+#include "volumetric_gi/vpl/vpl_near.h"
+
+#include <algorithm>
+
+#include <tbb/enumerable_thread_specific.h>
+#include <tbb/parallel_for.h>
+
+namespace tyndall::volumetric_gi {
+namespace {
+
+constexpr double kDielectricF0 = 0.04;
+/// Black surfaces mirror no less than this.
+constexpr double kLeastReflectance = 1e-3;
+
+dvec3 reflectance(const reference::Surface& surface) {
+    const dvec3 base(surface.baseColor);
+    const double metallic = surface.metallic, coat = kDielectricF0 * surface.specular;
+    return glm::max((1 - metallic) * (base + coat) + metallic * base, dvec3(kLeastReflectance));
+}
+
+} // namespace
+
+reference::CameraRays::CameraRay eyeRay(const gpu::ViewData& view, const dvec2& ndc) {
+    const dmat4 renderFromClip(view.renderFromClip);
+    const dvec3 eye(view.cameraPosition), forward(view.cameraForward);
+    if (view.flags & gpu::kViewOrthographic) {
+        const dvec4 point = renderFromClip * dvec4(ndc, 1, 1);
+        const dvec3 fromEye = dvec3(point) / point.w - eye;
+        return {{eye + fromEye - forward * glm::dot(fromEye, forward), forward},
+                double(view.cameraPosition.w)};
+    }
+    const dvec3 direction = glm::normalize(dvec3(renderFromClip * dvec4(ndc, 0, 1)));
+    return {{eye, direction}, double(view.cameraPosition.w) / glm::dot(direction, forward)};
+}
+
+NearLight lostBetweenSurfaces(const gpu::ViewData& view, const reference::TracerScene& scene,
+                              const reference::LightEmission& emission, const NearOrder& order) {
+    const auto size = uvec2(view.size.x, view.size.y);
+    const auto factor = uint32_t(order.factor);
+    const uvec2 squares = (size + factor - 1u) / factor;
+    NearLight lost;
+    lost.squares.assign(size_t(squares.x) * squares.y, vec4(0));
+    tbb::enumerable_thread_specific<reference::InstantRadiosity> tracers(
+        [&] { return reference::InstantRadiosity(scene, emission, order.settings); });
+    tbb::parallel_for(uint32_t(0), squares.y, [&](uint32_t y) {
+        reference::InstantRadiosity& tracer = tracers.local();
+        for (uint32_t x = 0; x < squares.x; ++x) {
+            const size_t square = size_t(y) * squares.x + x;
+            const uvec2 pixel = glm::min(uvec2(x, y) * factor + factor / 2, size - 1u);
+            const auto eye = eyeRay(view, (dvec2(pixel) + 0.5) * 2.0 / dvec2(size) - 1.0);
+            for (uint32_t i = 0; i < order.paths; ++i) {
+                reference::Sampler sampler(view.seed, square, order.first + i);
+                reference::TermLight light;
+                const reference::Surface* seen = tracer.traceBetweenSurfaces(eye, sampler, light);
+                if (!seen) continue;
+                lost.squares[square] +=
+                    vec4(vec3(light.sum() / reflectance(*seen)), 1) / float(order.paths);
+            }
+        }
+    });
+    for (const reference::InstantRadiosity& tracer : tracers)
+        lost.nonFinite += tracer.counts().nonFinite;
+    return lost;
+}
+
+} // namespace tyndall::volumetric_gi
