@@ -124,6 +124,46 @@ TEST(VplIncremental, WhatElseChangesTracesAnew) {
     EXPECT_EQ(kept.render(scene, other).statistics.at("walks_traced.gi.vpl"), 64);
 }
 
+TEST(VplRenewed, SoManyWalksAFrameUntilAllAreOfTheSceneAsItIs) {
+    for (const char* maps : {"gi.vpl.maps=rays", "gi.vpl.maps=points"}) {
+        RenderOptions options = incremental();
+        options.settings = {"gi.vpl.renewed=16", "gi.vpl.walks=40",  "gi.vpl.mapSide=16",
+                            "gi.vpl.points=512", "gi.vpl.samples=4", maps};
+        TestRenderer kept;
+        Scene scene = smokyCorner();
+        const auto traced = [&](Image& beauty) {
+            const Rendered now = kept.render(scene, options);
+            beauty = now.beauty;
+            return now.statistics.at("walks_traced.gi.vpl");
+        };
+        Image dim, now;
+        EXPECT_EQ(traced(dim), 40);
+        EXPECT_EQ(traced(now), 0);
+        for (Light& light : scene.lights) light.intensity *= 4;
+        scene.versions.lights = nextVersion();
+        double before = meanOf(dim);
+        for (const int expected : {16, 16, 8}) {
+            EXPECT_EQ(traced(now), expected) << maps;
+            EXPECT_GT(meanOf(now), before) << "light comes little by little";
+            before = meanOf(now);
+        }
+        EXPECT_EQ(traced(now), 0);
+        TestRenderer fresh;
+        EXPECT_LE(apart(now, fresh.render(scene, options).beauty), 1e-5) << maps;
+        EXPECT_NEAR(meanOf(now), 4 * meanOf(dim), 1e-4 * meanOf(now));
+        // The medium changes while walks are being renewed: all of them are, from where it stands.
+        move(scene, "puff", {0.1, 0, 0});
+        EXPECT_EQ(traced(now), 16);
+        move(scene, "puff", {0.1, 0, 0});
+        for (const int expected : {16, 8, 16, 0}) EXPECT_EQ(traced(now), expected) << maps;
+        TestRenderer again;
+        EXPECT_LE(apart(now, again.render(scene, options).beauty), 1e-5) << maps;
+        // Surfaces that move leave no map as it was.
+        move(scene, "wall", {0, 0, 0.01});
+        EXPECT_EQ(traced(now), 40);
+    }
+}
+
 TEST(VplIncremental, ShowsTheSameOnAverage) {
     const Scene scene = smokyCorner();
     RenderOptions options = incremental();

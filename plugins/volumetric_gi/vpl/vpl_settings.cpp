@@ -17,6 +17,9 @@ const SettingDesc kVplSettings[] = {
         VplSettings, candidates, "gi.vpl.candidates", "Walks to choose from", "", 1, 64, 16,
         "So many times as many walks are traced, and of their virtual lights one in so many is kept: such as matter to the picture. 1: all are, whatever the picture shows."),
     TYNDALL_INT(
+        VplSettings, renewed, "gi.vpl.renewed", "Walks renewed a frame", "", 0, 65536, 0,
+        "After a change of lights or media so many walks are traced anew in each frame, in turn, and light lags behind until all are; of candidates there is no choice then. 0: all at once."),
+    TYNDALL_INT(
         VplSettings, classes, "gi.vpl.classes", "Classes", "", 1, 1024, 8,
         "A point along a ray through media gathers one in so many walks; the points before and behind it gather others."),
     TYNDALL_INT(VplSettings, surfaceClasses, "gi.vpl.surfaceClasses", "Classes on surfaces", "", 1,

@@ -12,7 +12,7 @@ namespace tyndall::volumetric_gi {
 constexpr int32_t kVplMapsOfRays = 0, kVplMapsOfPoints = 1;
 
 struct VplSettings {
-    int32_t walks, candidates;
+    int32_t walks, candidates, renewed;
     int32_t classes, surfaceClasses;
     int32_t maps, points; // maps: kVplMapsOfRays …
     int32_t mapSide, depthSide;

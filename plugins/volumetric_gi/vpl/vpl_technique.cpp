@@ -92,11 +92,14 @@ void VplTechnique::makeLights(const plugin::FrameInputs& inputs) {
           uint64_t(settings_.fromSurfaces), uint64_t(settings_.fromMedia)})
         order = fg::mixHash(order, value);
     // Which lights matter changes with the media: where walks are to be kept, all are.
-    const uint32_t candidates = settings_.incremental ? 1 : uint32_t(settings_.candidates);
+    const bool inTurns = settings_.renewed > 0 && !settings_.incremental && !converges(inputs);
+    const uint32_t candidates =
+        settings_.incremental || inTurns ? 1 : uint32_t(settings_.candidates);
     order = fg::mixHash(order, candidates);
     if (candidates > 1) order = fg::mixHash(order, viewKey(inputs.view.data));
     const uint64_t walksKey = fg::mixHash(order, scene_.walksKey()),
-                   lightsKey = fg::mixHash(order, scene_.key());
+                   lightsKey = fg::mixHash(order, scene_.key()),
+                   surfacesKey = fg::mixHash(order, scene_.surfacesKey());
     times_ = {};
     walksTraced_ = 0;
     if (lightsKey == lightsKey_ && settings_.keep) return;
@@ -106,10 +109,14 @@ void VplTechnique::makeLights(const plugin::FrameInputs& inputs) {
                          generation,
                          settings_.fromSurfaces,
                          settings_.fromMedia};
+    if (inTurns && surfacesKey == turnsKey_ && settings_.keep) {
+        renewSome(what, lightsKey);
+        return;
+    }
     const bool anew = walksKey != walksKey_ || !settings_.keep;
     if (anew) {
         const Stopwatch watch(times_.walks);
-        walks_ = traceWalks(scene_.scene(), scene_.emission(), what);
+        walks_ = traceWalks(scene_.scene(), scene_.emission(), what, 0, what.walks);
         walksTraced_ = what.walks;
     }
     if (anew && candidates > 1) {
@@ -118,19 +125,59 @@ void VplTechnique::makeLights(const plugin::FrameInputs& inputs) {
     }
     set_ = packWalks(
         scene_.guessed() ? reweighed(walks_, *scene_.scene().media, scene_.media()) : walks_, what);
-    const reference::SurfaceScene& surfaces = *scene_.scene().surfaces;
-    if (anew) {
-        const Stopwatch watch(times_.maps);
-        maps_.clear();
-        points_ = {};
-        if (settings_.mapSide > 0 && settings_.maps == kVplMapsOfPoints)
-            points_ = makeSurfacePoints(surfaces, set_.positions, uint32_t(settings_.points),
-                                        kPointSets, generation);
-        else if (settings_.mapSide > 0 && surfaces.triangleCount() > 0)
-            maps_ = makeVisibilityMaps(surfaces, set_, uint32_t(settings_.mapSide), generation);
-    }
+    if (!scene_.guessed()) walks_ = {}; // they name media that are not kept
+    if (anew) makeMaps(generation);
     walksKey_ = walksKey;
-    lightsKey_ = lightsKey;
+    lightsKey_ = wantedKey_ = lightsKey;
+    turnsKey_ = inTurns ? surfacesKey : 0;
+    stale_ = nextTurn_ = 0;
+}
+
+/// Maps of what all lights see.
+void VplTechnique::makeMaps(uint32_t generation) {
+    const Stopwatch watch(times_.maps);
+    const reference::SurfaceScene& surfaces = *scene_.scene().surfaces;
+    maps_.clear();
+    points_ = {};
+    if (settings_.mapSide > 0 && settings_.maps == kVplMapsOfPoints)
+        points_ = makeSurfacePoints(surfaces, set_.positions, uint32_t(settings_.points),
+                                    kPointSets, generation);
+    else if (settings_.mapSide > 0 && surfaces.triangleCount() > 0)
+        maps_ = makeVisibilityMaps(surfaces, set_, uint32_t(settings_.mapSide), generation);
+}
+
+/// After a change of lights or media: so many walks a frame, in turn, until all are of the scene as it is. Maps of the other lights stay.
+void VplTechnique::renewSome(const WalkOrder& order, uint64_t lightsKey) {
+    if (lightsKey != wantedKey_) {
+        wantedKey_ = lightsKey;
+        stale_ = order.walks;
+    }
+    if (stale_ == 0) return;
+    const uint32_t first = nextTurn_,
+                   count = std::min({uint32_t(settings_.renewed), stale_, order.walks - first});
+    VplSet others;
+    {
+        const Stopwatch watch(times_.walks);
+        others =
+            packWalks(traceWalks(scene_.scene(), scene_.emission(), order, first, count), order);
+    }
+    const uint32_t begin = set_.starts[first], end = set_.starts[first + count];
+    replaceWalks(set_, first, others);
+    if (points_.points.empty() && !maps_.empty()) {
+        const Stopwatch watch(times_.maps);
+        const auto side = uint32_t(settings_.mapSide);
+        const auto stride = std::ptrdiff_t(side) * side + 1;
+        const std::vector<uint32_t> maps =
+            makeVisibilityMaps(*scene_.scene().surfaces, others, side, order.generation);
+        maps_.erase(maps_.begin() + begin * stride, maps_.begin() + end * stride);
+        maps_.insert(maps_.begin() + begin * stride, maps.begin(), maps.end());
+    } else {
+        makeMaps(order.generation);
+    }
+    walksTraced_ = count;
+    stale_ -= count;
+    nextTurn_ = first + count < order.walks ? first + count : 0;
+    lightsKey_ = walksKey_ = fg::mixHash(lightsKey, uint64_t(stale_) + 1);
 }
 
 /// Of the lights of all candidates those that matter to the picture.

@@ -28,6 +28,8 @@ public:
 private:
     fg::BufferHandle addStatistics(fg::FrameGraph& graph);
     void makeLights(const plugin::FrameInputs& inputs);
+    void makeMaps(uint32_t generation);
+    void renewSome(const WalkOrder& order, uint64_t lightsKey);
     void choose(const plugin::FrameInputs& inputs, const WalkOrder& order, uint32_t candidates);
     [[nodiscard]] bool makesUpBetweenSurfaces(const plugin::FrameInputs& inputs) const;
     void makeNear(const plugin::FrameInputs& inputs);
@@ -40,6 +42,11 @@ private:
     SurfacePoints points_;       // for maps that are splatted
     Walks walks_;                // through guessed media, where those are
     uint64_t lightsKey_ = 0, walksKey_ = 0;
+    uint64_t turnsKey_ = 0,
+             wantedKey_ =
+                 0; // of what all walks have in common, and of the lights as they are to be
+    uint32_t stale_ = 0,
+             nextTurn_ = 0;    // walks that are of an earlier scene; the next one to be renewed
     uint32_t walksTraced_ = 0; // in this frame
     NearLight near_;           // what the bound takes away between surfaces
     struct {

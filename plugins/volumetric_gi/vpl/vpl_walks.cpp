@@ -26,18 +26,18 @@ gpu::VplData pack(const reference::WalkVertex& vertex, double share) {
 } // namespace
 
 Walks traceWalks(const reference::TracerScene& scene, const reference::LightEmission& emission,
-                 const WalkOrder& order) {
+                 const WalkOrder& order, uint32_t first, uint32_t count) {
     Walks walks;
-    walks.starts.resize(order.walks);
-    walks.vertices.resize(order.walks);
+    walks.starts.resize(count);
+    walks.vertices.resize(count);
     tbb::enumerable_thread_specific<reference::LightWalker> walkers(
         [&] { return reference::LightWalker(scene, emission, {}); });
-    tbb::parallel_for(tbb::blocked_range<uint32_t>(0, order.walks, 16),
+    tbb::parallel_for(tbb::blocked_range<uint32_t>(0, count, 16),
                       [&](const tbb::blocked_range<uint32_t>& range) {
                           reference::LightWalker& walker = walkers.local();
                           for (uint32_t i = range.begin(); i < range.end(); ++i) {
-                              reference::Sampler sampler(order.seed, 0,
-                                                         order.generation * order.walks + i);
+                              reference::Sampler sampler(
+                                  order.seed, 0, order.generation * order.walks + first + i);
                               walker.trace(sampler, walks.vertices[i]);
                               walks.starts[i] = walker.start();
                           }
@@ -58,6 +58,7 @@ Walks reweighed(const Walks& walks, const reference::MediaField& from,
 VplSet packWalks(const Walks& walks, const WalkOrder& order) {
     VplSet set;
     set.walks.push_back(0);
+    set.starts.push_back(0);
     set.cutOff = walks.cutOff;
     const double share = 1 / double(order.walks);
     for (size_t i = 0; i < walks.vertices.size(); ++i) {
@@ -68,10 +69,30 @@ VplSet packWalks(const Walks& walks, const WalkOrder& order) {
             set.positions.push_back(vertex.position);
             set.margins.push_back(vertex.medium ? 0 : vertex.point.margin);
         }
+        set.starts.push_back(uint32_t(set.lights.size()));
         if ((i + 1) % order.together == 0 && set.lights.size() > set.walks.back())
             set.walks.push_back(uint32_t(set.lights.size()));
     }
     return set;
+}
+
+void replaceWalks(VplSet& set, uint32_t first, const VplSet& others) {
+    const auto count = uint32_t(others.starts.size() - 1);
+    const uint32_t begin = set.starts[first], end = set.starts[first + count];
+    const auto replace = [&](auto& in, const auto& by) {
+        in.erase(in.begin() + begin, in.begin() + end);
+        in.insert(in.begin() + begin, by.begin(), by.end());
+    };
+    replace(set.lights, others.lights);
+    replace(set.places, others.places);
+    replace(set.positions, others.positions);
+    replace(set.margins, others.margins);
+    for (uint32_t i = 0; i < count; ++i) set.starts[first + i] = begin + others.starts[i];
+    for (size_t i = first + count; i < set.starts.size(); ++i)
+        set.starts[i] += begin + uint32_t(others.lights.size()) - end;
+    set.walks = {0};
+    for (const uint32_t start : set.starts)
+        if (start > set.walks.back()) set.walks.push_back(start);
 }
 
 } // namespace tyndall::volumetric_gi

@@ -11,6 +11,8 @@ namespace tyndall::volumetric_gi {
 struct VplSet {
     std::vector<gpu::VplData> lights; // walk by walk
     std::vector<uint32_t> walks; // where each that left a light begins, and where the last ends
+    std::vector<uint32_t>
+        starts; // where the lights of each walk begin, of those without any, too; and where the last ends
     std::vector<gpu::VplPlace> places;
     std::vector<dvec3> positions; // of the lights, as exactly as they are known
     std::vector<double> margins;  // metres by which rays start off the surface; 0 in media
@@ -31,13 +33,15 @@ struct Walks {
     uint64_t cutOff = 0;
 };
 
-/// The same order gives the same walks, however many threads there are.
+/// The same order gives the same walks, however many threads there are. `count` of them from number `first` on.
 Walks traceWalks(const reference::TracerScene& scene, const reference::LightEmission& emission,
-                 const WalkOrder& order);
+                 const WalkOrder& order, uint32_t first, uint32_t count);
 /// What walks through one field carry in the other.
 Walks reweighed(const Walks& walks, const reference::MediaField& from,
                 const reference::MediaField& to);
 /// Powers are divided by the number of walks.
 VplSet packWalks(const Walks& walks, const WalkOrder& order);
+/// Puts other lights in the place of those of some walks, from number `first` on; order.together is 1.
+void replaceWalks(VplSet& set, uint32_t first, const VplSet& others);
 
 } // namespace tyndall::volumetric_gi
