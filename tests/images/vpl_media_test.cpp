@@ -3,67 +3,11 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "core/image_metrics.h"
-#include "reference/render.h"
 #include "support/content.h"
-#include "support/render.h"
+#include "vpl_truth.h"
 
 namespace tyndall::test {
 namespace {
-
-constexpr int kWidth = 32, kHeight = 18, kFrames = 24;
-
-/// The path tracer's picture of these terms, and the relmse that a perfect picture has against it.
-struct Truth {
-    Image picture;
-    double noise = 0;
-};
-
-Truth truthOf(const Scene& scene, TermSet terms, uint32_t samples) {
-    reference::RenderSettings settings;
-    settings.width = kWidth;
-    settings.height = kHeight;
-    settings.path.terms = terms;
-    auto render = reference::ReferenceRender::start(scene, scene.activeCamera, settings);
-    if (!render.ok()) throw std::runtime_error(render.message());
-    render->addSamples(samples);
-    Truth truth{render->film().beauty(), 0};
-    truth.noise = referenceFloor(truth.picture, render->film().variance()).value();
-    return truth;
-}
-
-struct Case {
-    const char* name;
-    std::string nodes; // each followed by a comma
-    double relmse;     // beside the reference's own noise
-    double energy;
-    TermSet terms = kIndirectInMedia;
-    std::vector<std::string> settings = {"gi.vpl.walks=1024"};
-};
-
-/// Bounds: four times the spread among seeds of the picture's mean, which follows from how many of the walks meet anything, and 1 to 2 % that
-/// the bound of the first frames takes away and one step does not make up for; twice the relmse that noise of so many walks and points has.
-void expectTheTruth(const Case& about) {
-    const Scene scene = sceneFromJson(
-        R"({"tyndall": 1, "camera": "eye", "nodes": [)" + about.nodes +
-        R"({"name": "eye", "camera": {"type": "perspective", "yfov": 0.8}, "translation": [0, 0.3, 4.5]}]})");
-    const Truth truth = truthOf(scene, about.terms, 2048);
-    RenderOptions options;
-    options.width = kWidth;
-    options.height = kHeight;
-    options.gi = "vpl";
-    options.terms = about.terms;
-    options.frames = kFrames;
-    options.settings = about.settings;
-    for (const char* every : {"gi.vpl.march=full", "gi.vpl.surfaces.resolution=full"})
-        options.settings.emplace_back(every);
-    const Image ours = sharedRenderer().render(scene, options).beauty;
-    const ImageMetrics found = compareImages(ours, truth.picture).value();
-    printf("%s: relmse %.4f, of it the reference's noise %.4f; energy %.4f\n", about.name,
-           found.relmse, truth.noise, found.energy);
-    EXPECT_LT(found.relmse, truth.noise + about.relmse) << about.name;
-    EXPECT_NEAR(found.energy, 1, about.energy) << about.name;
-}
 
 TEST(VplMediaAlone, ABallLitFromOutside) {
     expectTheTruth({"a ball of coloured fog", R"(
@@ -112,19 +56,11 @@ TEST(VplMediaAlone, UnevenSmokeInTheSun) {
                     {"gi.vpl.walks=4096"}});
 }
 
-/// A room without a front and without a lamp.
-const std::string kRoom = R"(
-    {"name": "floor", "primitive": {"shape": "box", "size": [3, 0.1, 3]}, "material": {"baseColor": [0.7, 0.7, 0.7], "specular": 0}, "translation": [0, -1.05, 0]},
-    {"name": "ceiling", "primitive": {"shape": "box", "size": [3, 0.1, 3]}, "material": {"baseColor": [0.7, 0.7, 0.7], "specular": 0}, "translation": [0, 1.05, 0]},
-    {"name": "left", "primitive": {"shape": "box", "size": [0.1, 2, 3]}, "material": {"baseColor": [0.7, 0.2, 0.1], "specular": 0}, "translation": [-1.55, 0, 0]},
-    {"name": "right", "primitive": {"shape": "box", "size": [0.1, 2, 3]}, "material": {"baseColor": [0.1, 0.5, 0.2], "specular": 0}, "translation": [1.55, 0, 0]},
-    {"name": "back", "primitive": {"shape": "box", "size": [3, 2, 0.1]}, "material": {"baseColor": [0.6, 0.6, 0.6], "specular": 0}, "translation": [0, 0, -1.55]},)";
-
 const std::vector<std::string> kFewerWalks = {
     "gi.vpl.walks=256"}; // in a room all meet something, again and again
 
 TEST(VplFireAlone, AGlowingBallLightsARoom) {
-    const std::string nodes = kRoom + R"(
+    const std::string nodes = kDarkRoom + R"(
         {"name": "fire", "medium": {"type": "homogeneous", "shape": "sphere", "size": [0.8, 0.8, 0.8], "scattering": [1.5, 1.5, 1.5],
             "absorption": [1, 1.2, 1.5], "emission": [30, 12, 3]}, "translation": [0.2, -0.4, 0]},)";
     expectTheTruth({"a glowing ball, media", nodes, 0.006, 0.06, kIndirectInMedia, kFewerWalks});
@@ -133,10 +69,10 @@ TEST(VplFireAlone, AGlowingBallLightsARoom) {
 }
 
 TEST(VplFireAlone, HotSmokeLightsARoom) {
-    const std::string nodes = kRoom + fmt::format(R"(
+    const std::string nodes = kDarkRoom + fmt::format(R"(
         {{"name": "fire", "medium": {{"type": "grid", "file": "{}", "grid": "density", "scattering": [2.5, 2.5, 2.5], "absorption": [1.5, 1.5, 1.5],
             "emission": {{"temperatureGrid": "temperature", "scale": 0.02}}}}, "translation": [0, -0.95, 0]}},)",
-                                                  kCampfire);
+                                                      kCampfire);
     // Flames are narrower than a texel of the maps of optical depth, 13 degrees: what is even in it lets more light through.
     expectTheTruth({"hot smoke, media", nodes, 0.03, 0.1, kIndirectInMedia, kFewerWalks});
     expectTheTruth({"hot smoke, surfaces", nodes, 0.008, 0.06, kIndirectOnSurfaces, kFewerWalks});
