@@ -15,6 +15,8 @@ PathSettings directOnly(TermSet terms) {
 
 /// Compensation far from its beginning carries little: from the third vertex on it ends by chance.
 constexpr double kLeastSurvival = 0.1;
+/// Also between surfaces that absorb nothing, with a bound so wide that it takes away all.
+constexpr double kMostSurvival = 0.95;
 /// Of the distance to a surface that an eye ray passes: on from behind it.
 constexpr double kPassed = 1e-6;
 
@@ -144,7 +146,7 @@ bool InstantRadiosity::nearVertex(Vertex& vertex) {
 
 bool InstantRadiosity::survives() {
     if (history_.count() < 3) return true;
-    const double chance = std::clamp(maximumOf(weights_.carried()), kLeastSurvival, 1.0);
+    const double chance = std::clamp(maximumOf(weights_.carried()), kLeastSurvival, kMostSurvival);
     if (!(sampler_->random() < chance)) return false;
     weights_.throughput /= chance;
     return true;

@@ -54,7 +54,7 @@ NearLight lostBetweenSurfaces(const gpu::ViewData& view, const reference::Tracer
                 const reference::Surface* seen = tracer.traceBetweenSurfaces(eye, sampler, light);
                 if (!seen) continue;
                 lost.squares[square] +=
-                    vec4(vec3(light.sum() / reflectance(*seen)), 1) / float(order.paths);
+                    vec4(vec3(light.sum() / reflectance(*seen) / double(order.paths)), 0);
             }
         }
     });

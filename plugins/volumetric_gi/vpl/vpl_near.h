@@ -18,7 +18,7 @@ struct NearOrder {
 };
 
 struct NearLight {
-    std::vector<vec4> squares; // the lowest row first; w: 1 where there is a surface
+    std::vector<vec4> squares; // the lowest row first; w: 0
     uint64_t nonFinite = 0;    // lights that were left out because they were no numbers
 };
 

@@ -203,6 +203,7 @@ bool VplTechnique::makesUpBetweenSurfaces(const plugin::FrameInputs& inputs) con
 
 void VplTechnique::makeNear(const plugin::FrameInputs& inputs) {
     const gpu::VplParams& params = gather_.params;
+    if (!near_.squares.empty() || params.nearLight != 0) ++nearVersion_;
     near_ = {};
     if (params.nearLight == 0) return;
     NearOrder order;
@@ -246,7 +247,7 @@ VplGather VplTechnique::gather(const plugin::FrameInputs& inputs) const {
     // by. Between surfaces the bound may not: the distance d below which one light in d² outshines the average must fall slower than the root of the frames.
     const double finer = std::pow(frames, 1.0 / 6);
     params.mediumClampSquared = squared(mean * double(settings_.surfaceClamp));
-    // What paths make up for may stay as noisy as it is welcome.
+    // Where paths bring what it takes away, it costs no light, and stays wide for less noise.
     params.nearLight = makesUpBetweenSurfaces(inputs) ? 1 : 0;
     params.surfaceClampSquared = params.nearLight != 0
                                      ? squared(meanDistanceOf(set_.positions, scene_.content(), 1) *
@@ -282,12 +283,11 @@ plugin::FrameOutputs VplTechnique::addPasses(fg::FrameGraph& graph,
     makeLights(inputs);
     gather_ = gather(inputs);
     makeNear(inputs);
-    const uint64_t nearKey =
-        near_.squares.empty() ? 0 : fg::mixHash(lightsKey_, inputs.view.data.frameIndex);
-    buffers_ = addVplUpload(graph, inputs,
-                            {&set_, &maps_, &points_, &scene_.triangles(), &scene_.tree(),
-                             &near_.squares, lightsKey_, walksKey_, scene_.surfacesKey(), nearKey},
-                            gather_.params);
+    buffers_ =
+        addVplUpload(graph, inputs,
+                     {&set_, &maps_, &points_, &scene_.triangles(), &scene_.tree(), &near_.squares,
+                      lightsKey_, walksKey_, scene_.surfacesKey(), nearVersion_},
+                     gather_.params);
     plugin::FrameOutputs outputs;
     if (inputs.terms & kIndirectOnSurfaces)
         outputs.surfaceRadiance = addVplSurfaces(graph, inputs, buffers_, gather_);

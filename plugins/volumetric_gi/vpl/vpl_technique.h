@@ -48,7 +48,8 @@ private:
     uint32_t stale_ = 0,
              nextTurn_ = 0;    // walks that are of an earlier scene; the next one to be renewed
     uint32_t walksTraced_ = 0; // in this frame
-    NearLight near_;           // what the bound takes away between surfaces
+    uint64_t nearVersion_ = 0;
+    NearLight near_; // what the bound takes away between surfaces
     struct {
         float walks = 0, choice = 0, maps = 0, near = 0;
     } times_; // of this frame, milliseconds
