@@ -17,7 +17,7 @@ namespace {
 /// would without a choice at most.
 constexpr double kLeastWorth = 0.5;
 /// Points that a light is asked about: a ray each.
-constexpr size_t kPointsOfLight = 16;
+constexpr size_t kPointsOfLight = 32;
 /// Chances are met to within this by so many halvings.
 constexpr int kHalvings = 60;
 

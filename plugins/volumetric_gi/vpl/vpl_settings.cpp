@@ -56,7 +56,7 @@ const SettingDesc kVplSettings[] = {
         100.0f, 0.5f,
         "The same for light from surface to surface and, where it is less, from surfaces to media: nothing makes up for it."),
     TYNDALL_FLOAT(
-        VplSettings, relaxed, "gi.vpl.relaxed", "Relaxed bound", "", 1.0f, 1000.0f, 5.0f,
+        VplSettings, relaxed, "gi.vpl.relaxed", "Relaxed bound", "", 1.0f, 1000.0f, 2.0f,
         "Traced compensation gathers with a bound at so many times less distance; at more in averaged frames, as they come."),
     TYNDALL_FLOAT(
         VplSettings, roughness, "gi.vpl.roughness", "Least roughness", "", 0.0f, 1.0f, 0.4f,
