@@ -243,7 +243,7 @@ VplGather VplTechnique::gather(const plugin::FrameInputs& inputs) const {
     const double mean = meanDistanceOf(set_.positions, scene_.content(), frames);
     const auto squared = [](double x) { return float(x * x); };
     params.clampSquared = squared(mean * double(settings_.clamp));
-    // Lights in a lobe, whose solid angle goes with the fourth power of roughness, become more as frames come, though it narrows; so does what is gathered near
+    // Lights in a lobe, whose solid angle goes with the fourth power of roughness, become more as frames come, though it narrows; so may what is gathered near
     // by. Between surfaces the bound may not: the distance d below which one light in d² outshines the average must fall slower than the root of the frames.
     const double finer = std::pow(frames, 1.0 / 6);
     params.mediumClampSquared = squared(mean * double(settings_.surfaceClamp));
@@ -254,7 +254,7 @@ VplGather VplTechnique::gather(const plugin::FrameInputs& inputs) const {
                                                double(settings_.surfaceClamp) / finer)
                                      : params.mediumClampSquared;
     params.leastRoughness = float(double(settings_.roughness) / finer);
-    params.relaxed = float(double(settings_.relaxed) * std::cbrt(frames));
+    params.relaxed = float(double(settings_.relaxed) * finer);
     const Bounds& content = scene_.content();
     const double radius = content.empty() ? 0 : 0.5 * glm::length(content.extent());
     if (radius > 0) params.content = vec4(vec3(content.centre()), squared(1 / radius));
