@@ -31,7 +31,7 @@ public:
     void trace(const CameraRays::CameraRay& start, Sampler& sampler, TermLight& light);
     /// Nothing but what the bound takes away between the surface that an eye ray meets first and other surfaces: as it leaves there towards the eye,
     /// without media on that way. Surfaces of partial coverage (BLEND) are passed by the eye ray.
-    /// The eye's surface, or null where there is none; until the next path.
+    /// Returns that surface, good until the next path; null where there is none.
     const Surface* traceBetweenSurfaces(const CameraRays::CameraRay& start, Sampler& sampler,
                                         TermLight& light);
     [[nodiscard]] PathCounts counts() const;

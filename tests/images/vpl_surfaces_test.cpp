@@ -20,7 +20,7 @@ Case shelf(const char* name, std::vector<std::string> settings) {
     return {name, kDarkRoom + kShelf + kLamp, 0.01, 0.02, kIndirectOnSurfaces, settings};
 }
 
-TEST(VplBetweenSurfaces, TheMeanIsTheSameForEveryBound) {
+TEST(VplBetweenSurfaces, TheMeanIsTheSameOverADecadeOfBounds) {
     // Below half the mean distance single lights beside a pixel outshine its average: their mean is right, but 24 frames do not show it.
     expectTheTruth(shelf("bound at 0.5", {"gi.vpl.surfaceClamp=0.5"}));
     expectTheTruth(shelf("bound at 2", {"gi.vpl.surfaceClamp=2", "gi.vpl.nearPaths=4"}));

@@ -150,6 +150,7 @@ TEST(VplRenewed, SoManyWalksAFrameUntilAllAreOfTheSceneAsItIs) {
         EXPECT_EQ(traced(now), 0);
         TestRenderer fresh;
         EXPECT_LE(apart(now, fresh.render(scene, options).beauty), 1e-5) << maps;
+        // Light is linear; sums in single precision.
         EXPECT_NEAR(meanOf(now), 4 * meanOf(dim), 1e-4 * meanOf(now));
         // The medium changes while walks are being renewed: all of them are, from where it stands.
         move(scene, "puff", {0.1, 0, 0});

@@ -45,6 +45,7 @@ int expectSame(const SurfaceScene& a, const SurfaceScene& b, std::mt19937_64& ra
         EXPECT_EQ(one.found(), other.found()) << i;
         if (!one.found() || !other.found()) continue;
         ++found;
+        // Embree computes in single precision, and in another order in another tree.
         EXPECT_NEAR(one.distance, other.distance, 1e-5 * other.distance);
         const SurfacePoint p = a.pointAt(ray, one), q = b.pointAt(ray, other);
         EXPECT_LT(glm::distance(p.position, q.position), 1e-5 * glm::length(q.position) + 1e-6);
