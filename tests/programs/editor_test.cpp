@@ -39,7 +39,7 @@ struct EditorTest : ::testing::Test {
     }
     ProcessResult editor(std::vector<std::string> arguments) {
         arguments.insert(arguments.begin(),
-                         {kXvfbRun, "-a", "-s", "-screen 0 1280x800x24", program()});
+                         {kXvfbRun, "-a", "-s", "-noreset -screen 0 1280x800x24", program()});
         return run(arguments, options);
     }
     [[nodiscard]] std::string file(const std::string& name) const {
