@@ -64,9 +64,22 @@ void InstantRadiosity::see(PathHistory history, const dvec3& light) {
     light_->add(term, light);
 }
 
-double InstantRadiosity::clampDistanceAt(const dvec3& position) const {
-    return settings_.clampDistance *
-           std::max(1.0, glm::length(position - settings_.middle) / settings_.radius);
+double InstantRadiosity::scaleAt(const dvec3& position) const {
+    return std::max(1.0, glm::length(position - settings_.middle) / settings_.radius);
+}
+
+InstantRadiosity::Reach InstantRadiosity::reachAt(const dvec3& position) const {
+    const double reach = settings_.clampDistance * scaleAt(position);
+    return {reach, reach};
+}
+
+/// For light that a path's first vertex receives.
+InstantRadiosity::Reach InstantRadiosity::reachElsewhere(const Vertex& vertex) const {
+    const double scale = scaleAt(vertex.position);
+    const HeldElsewhere& held = settings_.elsewhere;
+    if (vertex.onSurface()) return {scale * held.betweenSurfaces, scale * held.ofMedia};
+    const double reach = std::min(scale * held.ofMedia, 1 / maximumOf(mediumPoint_.extinction));
+    return {std::min(scale * held.fromSurfacesToMedia, reach), reach};
 }
 
 /// A path's first random numbers: which channel it follows.
@@ -119,7 +132,7 @@ bool InstantRadiosity::nextVertex(Ray& ray, double nearest, RayKind kind, Vertex
 }
 
 /// On to where light comes from that is too near to be left to virtual lights, with the part of it that the bound takes away. False where there is none.
-bool InstantRadiosity::nearVertex(Vertex& vertex) {
+bool InstantRadiosity::nearVertex(Vertex& vertex, const Reach& reach) {
     const double u = sampler_->next1();
     dvec3 direction;
     if (vertex.onSurface()) {
@@ -136,10 +149,10 @@ bool InstantRadiosity::nearVertex(Vertex& vertex) {
     Ray ray = from.rayTowards(direction);
     if (!nextVertex(ray, 0, RayKind::Path, vertex)) return false;
     const dvec3 way = vertex.position - from.position;
-    const double distance = clampDistanceAt(from.position), bound = 1 / (distance * distance);
+    const double held = vertex.onSurface() ? reach.ofSurfaces : reach.ofMedia;
     const double cosines = from.cosine(direction) * vertex.cosine(-direction);
     const double missing =
-        cosines > 0 ? std::max(0.0, 1 - bound * glm::dot(way, way) / cosines) : 0;
+        cosines > 0 ? std::max(0.0, 1 - glm::dot(way, way) / (held * held * cosines)) : 0;
     weights_.throughput *= missing;
     return weights_.throughput != dvec3(0);
 }
@@ -168,43 +181,77 @@ void InstantRadiosity::trace(const CameraRays::CameraRay& start, Sampler& sample
     if (!nextVertex(ray, start.nearest, RayKind::Camera, vertex)) return;
     gatherWalk(vertex);
     if (!settings_.compensate || !(settings_.clampDistance > 0)) return;
-    while (nearVertex(vertex)) {
+    while (nearVertex(vertex, reachAt(vertex.position))) {
         gatherLights(vertex);
         if (!survives()) return;
         gatherWalk(vertex);
     }
 }
 
-const Surface* InstantRadiosity::traceBetweenSurfaces(const CameraRays::CameraRay& start,
-                                                      Sampler& sampler, TermLight& light) {
-    begin(sampler, light);
-    if (!scene_.media->grey()) weights_.hero = std::min(2, int(3 * sampler.next1()));
+/// Of the surface where an eye ray ends.
+RayHit InstantRadiosity::opaqueHit(const CameraRays::CameraRay& start) {
     RayHit hit;
     double nearest = start.nearest;
     do {
         hit = scene_.surfaces->intersect(start.ray, nearest, kInfinity, RayKind::Camera,
-                                         sampler.bits());
-        if (!hit.found()) return nullptr;
+                                         sampler_->bits());
         nearest = hit.distance * (1 + kPassed);
-    } while (scene_.surfaces->instances()[hit.instance].material->alphaMode == AlphaMode::Blend);
+    } while (hit.found() &&
+             scene_.surfaces->instances()[hit.instance].material->alphaMode == AlphaMode::Blend);
+    return hit;
+}
+
+/// On from a path's first vertex, to where nobody else has gathered.
+void InstantRadiosity::followMissed(Vertex& vertex) {
+    const Reach reach = reachElsewhere(vertex);
+    if (!nearVertex(vertex, reach)) return;
+    if (!vertex.onSurface()) {
+        // What is scattered there once, and what virtual lights bring within the relaxed bound, is gathered elsewhere.
+        const HeldElsewhere& held = settings_.elsewhere;
+        const double relaxed = reach.ofMedia / held.relaxed;
+        const double ofSurfaces = scaleAt(vertex.position) * held.fromSurfacesToMedia;
+        if (!nearVertex(vertex, {std::min(ofSurfaces, relaxed), relaxed}) || !survives()) return;
+    }
+    traceWalk();
+    do {
+        gatherLights(vertex);
+        if (!survives()) return;
+        gatherWalk(vertex);
+    } while (nearVertex(vertex, reachAt(vertex.position)));
+}
+
+const Surface* InstantRadiosity::traceMissedOnSurface(const CameraRays::CameraRay& start,
+                                                      Sampler& sampler, TermLight& light) {
+    begin(sampler, light);
+    if (!scene_.media->grey()) weights_.hero = std::min(2, int(3 * sampler.next1()));
+    const RayHit hit = opaqueHit(start);
+    if (!hit.found()) return nullptr;
     Vertex vertex;
     enter(start.ray, hit, vertex);
     if (vertex.point.unlit) return nullptr;
     seen_ = vertex.point.surface;
     history_.add(Scattering::Surface);
-    if (!nearVertex(vertex) || !vertex.onSurface()) return &seen_;
-    traceWalk();
-    do {
-        gatherLights(vertex);
-        if (!survives()) break;
-        gatherWalk(vertex);
-    } while (nearVertex(vertex));
+    followMissed(vertex);
     return &seen_;
+}
+
+void InstantRadiosity::traceMissedInMedia(const CameraRays::CameraRay& start, Sampler& sampler,
+                                          TermLight& light) {
+    begin(sampler, light);
+    if (!scene_.media->grey()) weights_.hero = std::min(2, int(3 * sampler.next1()));
+    segment_.start(start.ray, opaqueHit(start).distance);
+    const auto flight = segment_.fly(sampler, weights_, mediumPoint_, emitted_);
+    if (!flight.collided || weights_.throughput == dvec3(0)) return;
+    Vertex vertex;
+    vertex.before = start.ray.direction;
+    vertex.position = start.ray.at(flight.distance);
+    history_.add(Scattering::Medium);
+    followMissed(vertex);
 }
 
 /// Light of all vertices of the walk, with the geometry term held at the bound.
 void InstantRadiosity::gatherWalk(const Vertex& vertex) {
-    const double distanceHeld = clampDistanceAt(vertex.position),
+    const double distanceHeld = settings_.clampDistance * scaleAt(vertex.position),
                  least = distanceHeld * distanceHeld;
     for (const WalkVertex& source : walk_) {
         const dvec3 way = source.position - vertex.position;

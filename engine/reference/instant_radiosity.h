@@ -12,6 +12,14 @@
 
 namespace tyndall::reference {
 
+/// Bounds with which someone else gathers, who follows what they take away in media one step, to a point that gathers in turn. Metres in the ball of the
+/// settings, by where light comes from and who receives it; in media a bound reaches no farther than the free path at the receiver.
+struct HeldElsewhere {
+    double betweenSurfaces = 0, ofMedia = 0;
+    double fromSurfacesToMedia = 0; // where it is less than ofMedia
+    double relaxed = 1; // of the bound's distance over that with which the step's end gathers
+};
+
 struct InstantRadiositySettings {
     TermSet terms = kAllTerms;
     double clampDistance =
@@ -21,6 +29,7 @@ struct InstantRadiositySettings {
     dvec3 middle{0};
     double radius = kInfinity; // metres
     double leastRoughness = 0; // smoother surfaces are taken for as rough as that
+    HeldElsewhere elsewhere{}; // for what they miss
 };
 
 class InstantRadiosity {
@@ -29,25 +38,35 @@ public:
                      const InstantRadiositySettings& settings);
 
     void trace(const CameraRays::CameraRay& start, Sampler& sampler, TermLight& light);
-    /// Nothing but what the bound takes away between the surface that an eye ray meets first and other surfaces: as it leaves there towards the eye,
-    /// without media on that way. Surfaces of partial coverage (BLEND) are passed by the eye ray.
+    /// Nothing but what HeldElsewhere misses, of light that leaves the surface that an eye ray meets first towards the eye, without media on that way.
+    /// Surfaces of partial coverage (BLEND) are passed by the eye ray.
     /// Returns that surface, good until the next path; null where there is none.
-    const Surface* traceBetweenSurfaces(const CameraRays::CameraRay& start, Sampler& sampler,
+    const Surface* traceMissedOnSurface(const CameraRays::CameraRay& start, Sampler& sampler,
                                         TermLight& light);
+    /// The same of light that media before that surface scatter to the eye, as it arrives there.
+    void traceMissedInMedia(const CameraRays::CameraRay& start, Sampler& sampler, TermLight& light);
     [[nodiscard]] PathCounts counts() const;
 
 private:
     struct Vertex;
+    /// Metres within which light is held, from surfaces and from media.
+    struct Reach {
+        double ofSurfaces = 0, ofMedia = 0;
+    };
     void begin(Sampler& sampler, TermLight& light);
     void traceWalk();
     void enter(const Ray& ray, const RayHit& hit, Vertex& vertex) const;
     bool nextVertex(Ray& ray, double nearest, RayKind kind, Vertex& vertex);
-    bool nearVertex(Vertex& vertex);
+    bool nearVertex(Vertex& vertex, const Reach& reach);
+    RayHit opaqueHit(const CameraRays::CameraRay& start);
+    void followMissed(Vertex& vertex);
     bool survives();
     void gatherWalk(const Vertex& vertex);
     void gatherLights(const Vertex& vertex);
     void see(PathHistory history, const dvec3& light);
-    [[nodiscard]] double clampDistanceAt(const dvec3& position) const;
+    [[nodiscard]] double scaleAt(const dvec3& position) const;
+    [[nodiscard]] Reach reachAt(const dvec3& position) const;
+    [[nodiscard]] Reach reachElsewhere(const Vertex& vertex) const;
 
     const TracerScene& scene_;
     InstantRadiositySettings settings_;

@@ -78,7 +78,7 @@ struct VplParams {
     uint treeSize;    // nodes; 0: nothing is hidden
     uint lost;        // 1: lights give what the bound takes away from them, and nothing else
     float mediumClampSquared; // m²: 1/b in the content from surface to medium
-    uint nearLight;           // 1: what the bound takes away between surfaces is in `VplNear`
+    uint nearLight;           // 1: what the bound takes away and no step makes up for is in `VplNear`
     uint padding0, padding1;
 };
 

@@ -21,7 +21,7 @@ GATHERING = ("gi.vpl.surfaces", "gi.vpl.upsampleSurfaces", "gi.vpl.refineSurface
 WALKS = (64, 128, 256, 512, 1024)
 CANDIDATES = (1, 2, 4, 8, 16)
 FINE = "512x288"  # of a single frame: outlines of the reference are averages, and so have its pixels to be; direct light at 256x144 has 0.036 of squared error in Sponza for that alone
-LONGER = {"cornell fog, τ 8": 2, "smoke in a room": 2, "Sponza with fog": 4, "cloud": 6}  # times as many frames, where they are needed
+LONGER = {"cornell fog, τ 8": 2, "smoke in a room": 2, "Sponza with fog": 4, "cloud": 2}  # times as many frames, where they are needed
 
 
 class VplBench(Bench):

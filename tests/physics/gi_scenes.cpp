@@ -8,12 +8,6 @@
 
 namespace tyndall::test {
 
-double meanOf(const Image& image) {
-    double sum = 0;
-    for (const float v : image.pixels) sum += double(v);
-    return sum / double(image.pixels.size());
-}
-
 double indirectMean(const std::string& gi, const Scene& scene, std::vector<std::string> settings) {
     RenderOptions options;
     options.width = 48;

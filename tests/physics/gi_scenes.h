@@ -4,15 +4,13 @@
 #include <string>
 #include <vector>
 
-#include "core/image.h"
 #include "scene/scene.h"
+#include "support/render.h"
 #include "transport/terms.h"
 
 namespace tyndall::test {
 
 inline constexpr TermSet kIndirect = kIndirectOnSurfaces | kIndirectInMedia;
-
-double meanOf(const Image& image);
 
 /// Mean indirect light of a small picture, on surfaces and in media, by the technique `gi`.
 double indirectMean(const std::string& gi, const Scene& scene, std::vector<std::string> settings);

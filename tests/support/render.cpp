@@ -108,6 +108,12 @@ vec3 Rendered::centre(const std::string& term, int radius) const {
     return sum / float(count);
 }
 
+double meanOf(const Image& image) {
+    double sum = 0;
+    for (const float v : image.pixels) sum += double(v);
+    return sum / double(image.pixels.size());
+}
+
 Scene sceneFromJson(const std::string& json) {
     std::string text = json;
     const auto content = sharedContent("");

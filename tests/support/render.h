@@ -57,6 +57,9 @@ private:
 /// The EGL renderer that tests of one executable share.
 TestRenderer& sharedRenderer();
 
+/// Over pixels and channels.
+double meanOf(const Image& image);
+
 /// A scene from the JSON of a scene file; `{CONTENT}` in it becomes the shared content's folder. Throws on refusal.
 Scene sceneFromJson(const std::string& json);
 

@@ -142,6 +142,7 @@ fg::TextureHandle addMarch(fg::FrameGraph& graph, const plugin::FrameInputs& inp
                 data.stage = stage;
                 if (stage == Stage::Spread) data.transmittance = builder.read(inputs.transmittance);
                 if (stage != Stage::Squares) data.before = builder.read(before);
+                if (stage != Stage::Spread) data.lights.nearMedia = builder.read(lights.nearMedia);
                 if (stage == Stage::Fill) data.march.flags |= gpu::kMarchFill;
                 data.result = builder.create(
                     "gi.vpl.inScatter",
@@ -157,7 +158,8 @@ fg::TextureHandle addMarch(fg::FrameGraph& graph, const plugin::FrameInputs& inp
                     command.bind("transmittance", data.transmittance)
                         .bind("coarseInScatter", data.before);
                 else // where nothing is before, it is not looked at, but has to be something
-                    command.bind("gathered", data.before ? data.before : data.gbuffer.depth);
+                    command.bind("gathered", data.before ? data.before : data.gbuffer.depth)
+                        .bind("VplNear", data.lights.nearMedia);
                 command.dispatchOver(data.result);
             })
         .result;
@@ -252,6 +254,7 @@ VplBuffers readVpls(fg::Builder& builder, const VplBuffers& buffers) {
             builder.read(buffers.triangles),
             builder.read(buffers.tree),
             builder.read(buffers.depths),
+            {},
             {}};
 }
 
@@ -265,7 +268,8 @@ VplBuffers addVplUpload(fg::FrameGraph& graph, const plugin::FrameInputs& inputs
     buffers.walks = add("gi.vpl.walks", upload.set->walks, upload.mapsKey);
     buffers.triangles = add("gi.vpl.triangles", *upload.triangles, upload.trianglesKey);
     buffers.tree = add("gi.vpl.tree", *upload.tree, upload.trianglesKey);
-    buffers.near = add("gi.vpl.near", *upload.near, upload.nearKey);
+    buffers.nearSurfaces = add("gi.vpl.nearSurfaces", *upload.nearSurfaces, upload.nearKey);
+    buffers.nearMedia = add("gi.vpl.nearMedia", *upload.nearMedia, upload.nearKey);
     if (upload.points->points.empty()) {
         buffers.maps = add("gi.vpl.maps", *upload.maps, upload.mapsKey);
     } else {
@@ -318,7 +322,7 @@ fg::TextureHandle addVplSurfaces(fg::FrameGraph& graph, const plugin::FrameInput
                     declare(builder, data, inputs, lights, gather, gather.surfaceFactor);
                     readSurfaces(builder, data, inputs);
                     data.before = builder.read(squares);
-                    data.lights.near = builder.read(lights.near);
+                    data.lights.nearSurfaces = builder.read(lights.nearSurfaces);
                     if (inputs.transmittance)
                         data.transmittance = builder.read(inputs.transmittance);
                     data.result = builder.create("gi.vpl.surfaceRadiance", picture(inputs, 1));
@@ -328,7 +332,7 @@ fg::TextureHandle addVplSurfaces(fg::FrameGraph& graph, const plugin::FrameInput
                     bindSurfaces(command, data.gbuffer);
                     command.params(data.params, "Vpl")
                         .bind("squares", data.before)
-                        .bind("VplNear", data.lights.near)
+                        .bind("VplNear", data.lights.nearSurfaces)
                         .bind("surfaceRadiance", data.result)
                         .bind("transmittance",
                               data.transmittance ? data.transmittance : data.before)

@@ -11,8 +11,8 @@ namespace tyndall::volumetric_gi {
 
 struct VplBuffers {
     fg::BufferHandle lights, walks, maps, triangles, tree;
-    fg::BufferHandle depths; // of grids; null: without
-    fg::BufferHandle near;   // what the bound takes away between surfaces, square by square
+    fg::BufferHandle depths;                  // of grids; null: without
+    fg::BufferHandle nearSurfaces, nearMedia; // NearLight
 };
 
 /// Declares that a pass reads them; the result is what bindVpls() takes.
@@ -37,7 +37,7 @@ struct VplUpload {
     const SurfacePoints* points = nullptr;       // not empty: they are to be splatted into maps
     const std::vector<gpu::VplTriangle>* triangles = nullptr;
     const std::vector<reference::TreeNode>* tree = nullptr;
-    const std::vector<vec4>* near = nullptr; // empty: without
+    const std::vector<vec4>*nearSurfaces = nullptr, *nearMedia = nullptr; // empty: without
     uint64_t lightsKey = 0, mapsKey = 0, trianglesKey = 0, nearKey = 0;
 };
 

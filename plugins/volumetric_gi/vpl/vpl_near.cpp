@@ -18,6 +18,49 @@ dvec3 reflectance(const reference::Surface& surface) {
     return glm::max((1 - metallic) * (base + coat) + metallic * base, dvec3(kLeastReflectance));
 }
 
+using Tracers = tbb::enumerable_thread_specific<reference::InstantRadiosity>;
+/// Light that a path brings to an eye ray.
+using Trace = dvec3 (*)(reference::InstantRadiosity&, const reference::CameraRays::CameraRay&,
+                        reference::Sampler&);
+
+dvec3 missedOnSurface(reference::InstantRadiosity& tracer,
+                      const reference::CameraRays::CameraRay& eye, reference::Sampler& sampler) {
+    reference::TermLight light;
+    const reference::Surface* seen = tracer.traceMissedOnSurface(eye, sampler, light);
+    return seen ? light.sum() / reflectance(*seen) : dvec3(0);
+}
+
+dvec3 missedInMedia(reference::InstantRadiosity& tracer,
+                    const reference::CameraRays::CameraRay& eye, reference::Sampler& sampler) {
+    reference::TermLight light;
+    tracer.traceMissedInMedia(eye, sampler, light);
+    return light.sum();
+}
+
+/// Mean over a square's paths, square by square. `kind` tells random numbers apart.
+std::vector<vec4> missed(Trace trace, Tracers& tracers, const gpu::ViewData& view, int edge,
+                         uint64_t kind, const NearOrder& order) {
+    const auto size = uvec2(view.size.x, view.size.y);
+    const auto factor = uint32_t(edge);
+    const uvec2 squares = (size + factor - 1u) / factor;
+    std::vector<vec4> light(size_t(squares.x) * squares.y);
+    tbb::parallel_for(uint32_t(0), squares.y, [&](uint32_t y) {
+        reference::InstantRadiosity& tracer = tracers.local();
+        for (uint32_t x = 0; x < squares.x; ++x) {
+            const size_t square = size_t(y) * squares.x + x;
+            const uvec2 pixel = glm::min(uvec2(x, y) * factor + factor / 2, size - 1u);
+            const auto eye = eyeRay(view, (dvec2(pixel) + 0.5) * 2.0 / dvec2(size) - 1.0);
+            dvec3 sum(0);
+            for (uint32_t i = 0; i < order.paths; ++i) {
+                reference::Sampler sampler(view.seed, 2 * square + kind, order.first + i);
+                sum += trace(tracer, eye, sampler);
+            }
+            light[square] = vec4(vec3(sum / double(order.paths)), 0);
+        }
+    });
+    return light;
+}
+
 } // namespace
 
 reference::CameraRays::CameraRay eyeRay(const gpu::ViewData& view, const dvec2& ndc) {
@@ -33,34 +76,17 @@ reference::CameraRays::CameraRay eyeRay(const gpu::ViewData& view, const dvec2& 
     return {{eye, direction}, double(view.cameraPosition.w) / glm::dot(direction, forward)};
 }
 
-NearLight lostBetweenSurfaces(const gpu::ViewData& view, const reference::TracerScene& scene,
-                              const reference::LightEmission& emission, const NearOrder& order) {
-    const auto size = uvec2(view.size.x, view.size.y);
-    const auto factor = uint32_t(order.factor);
-    const uvec2 squares = (size + factor - 1u) / factor;
-    NearLight lost;
-    lost.squares.assign(size_t(squares.x) * squares.y, vec4(0));
-    tbb::enumerable_thread_specific<reference::InstantRadiosity> tracers(
-        [&] { return reference::InstantRadiosity(scene, emission, order.settings); });
-    tbb::parallel_for(uint32_t(0), squares.y, [&](uint32_t y) {
-        reference::InstantRadiosity& tracer = tracers.local();
-        for (uint32_t x = 0; x < squares.x; ++x) {
-            const size_t square = size_t(y) * squares.x + x;
-            const uvec2 pixel = glm::min(uvec2(x, y) * factor + factor / 2, size - 1u);
-            const auto eye = eyeRay(view, (dvec2(pixel) + 0.5) * 2.0 / dvec2(size) - 1.0);
-            for (uint32_t i = 0; i < order.paths; ++i) {
-                reference::Sampler sampler(view.seed, square, order.first + i);
-                reference::TermLight light;
-                const reference::Surface* seen = tracer.traceBetweenSurfaces(eye, sampler, light);
-                if (!seen) continue;
-                lost.squares[square] +=
-                    vec4(vec3(light.sum() / reflectance(*seen) / double(order.paths)), 0);
-            }
-        }
-    });
+NearLight missedLight(const gpu::ViewData& view, const reference::TracerScene& scene,
+                      const reference::LightEmission& emission, const NearOrder& order) {
+    Tracers tracers([&] { return reference::InstantRadiosity(scene, emission, order.settings); });
+    NearLight light;
+    if (order.onSurfaces)
+        light.onSurfaces = missed(missedOnSurface, tracers, view, order.surfaceFactor, 0, order);
+    if (order.inMedia)
+        light.inMedia = missed(missedInMedia, tracers, view, order.mediaFactor, 1, order);
     for (const reference::InstantRadiosity& tracer : tracers)
-        lost.nonFinite += tracer.counts().nonFinite;
-    return lost;
+        light.nonFinite += tracer.counts().nonFinite;
+    return light;
 }
 
 } // namespace tyndall::volumetric_gi

@@ -40,8 +40,8 @@ const SettingDesc kVplSettings[] = {
         VplSettings, compensation, "gi.vpl.compensation", "Compensation", kCompensationNames, 2,
         "What the bound takes away: missing, made up for as if light were even, or gathered from a point near by."),
     TYNDALL_INT(
-        VplSettings, nearPaths, "gi.vpl.nearPaths", "Paths between surfaces", "", 0, 1024, 1,
-        "In averaged frames, with traced compensation: paths on the processor for each square of surfaces, which bring what the bound takes away between surfaces; 0: it is missing."),
+        VplSettings, nearPaths, "gi.vpl.nearPaths", "Paths for what is missed", "", 0, 1024, 1,
+        "In averaged frames, with traced compensation: paths on the processor for each square of surfaces and each ray, which bring what the bound takes away and the traced step does not make up for; 0: it is missing."),
     TYNDALL_ENUM(
         VplSettings, march, "gi.vpl.march", "March resolution", kMarchNames, 1,
         "Rays along which media show virtual lights: for every pixel, or for squares of 2, 4 or 8 pixels a side."),
@@ -54,7 +54,7 @@ const SettingDesc kVplSettings[] = {
     TYNDALL_FLOAT(
         VplSettings, surfaceClamp, "gi.vpl.surfaceClamp", "Bound between surfaces", "", 0.0f,
         100.0f, 0.5f,
-        "The same for light from surface to surface and, where it is less, from surfaces to media: nothing makes up for it."),
+        "The same for light from surface to surface and, where it is less, from surfaces to media: in one frame nothing makes up for it."),
     TYNDALL_FLOAT(
         VplSettings, relaxed, "gi.vpl.relaxed", "Relaxed bound", "", 1.0f, 1000.0f, 2.0f,
         "Traced compensation gathers with a bound at so many times less distance; at more in averaged frames, as they come."),
@@ -86,7 +86,7 @@ constexpr PresetEntry kVplPresets[] = {
     {Quality::Low, "gi.vpl.nearPaths", "1"},
     {Quality::Medium, "gi.vpl.nearPaths", "1"},
     {Quality::High, "gi.vpl.nearPaths", "2"},
-    {Quality::Ultra, "gi.vpl.nearPaths", "4"},
+    {Quality::Ultra, "gi.vpl.nearPaths", "8"},
     {Quality::Low, "gi.vpl.surfaces.resolution", "quarter"},
     {Quality::Medium, "gi.vpl.surfaces.resolution", "half"},
     {Quality::High, "gi.vpl.surfaces.resolution", "half"},

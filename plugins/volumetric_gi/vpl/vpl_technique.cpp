@@ -57,6 +57,10 @@ private:
 /// Of points that are splatted into maps: lights side by side have different ones, so that their errors differ.
 constexpr uint32_t kPointSets = 8;
 
+/// With which paths gather their own walk, over the content's radius. A tenth has half as much noise again, for then a single light may outshine the others;
+/// between 0.3 and 3 neither noise nor time change by a quarter (boxes of fog and smoke, Sponza, the cloud).
+constexpr double kBoundOfPaths = 0.3;
+
 /// With which it is found out what lights matter.
 constexpr uint32_t kSeenPoints = 256;
 
@@ -193,30 +197,39 @@ void VplTechnique::choose(const plugin::FrameInputs& inputs, const WalkOrder& or
                  meanDistanceOf(lights, scene_.content(), 1.0 / candidates), seed);
 }
 
-/// Paths on the processor: in averaged frames alone, for they are noise that has to be averaged. Not where walks go through guesses of the media.
-bool VplTechnique::makesUpBetweenSurfaces(const plugin::FrameInputs& inputs) const {
-    return settings_.nearPaths > 0 && settings_.surfaceClamp > 0 && settings_.fromSurfaces &&
+/// By paths on the processor: in averaged frames alone, for they are noise that has to be averaged. Not where walks go through guesses of the media.
+bool VplTechnique::followsWhatIsMissed(const plugin::FrameInputs& inputs) const {
+    return settings_.nearPaths > 0 && settings_.fromSurfaces && settings_.fromMedia &&
            settings_.compensation == int32_t(gpu::kVplTraced) &&
-           settings_.show != int32_t(gpu::kVplShowLost) && converges(inputs) && !scene_.guessed() &&
-           (inputs.terms & kIndirectOnSurfaces) != 0;
+           settings_.show != int32_t(gpu::kVplShowLost) && converges(inputs) && !scene_.guessed();
 }
 
 void VplTechnique::makeNear(const plugin::FrameInputs& inputs) {
     const gpu::VplParams& params = gather_.params;
-    if (!near_.squares.empty() || params.nearLight != 0) ++nearVersion_;
+    if (!near_.onSurfaces.empty() || !near_.inMedia.empty() || params.nearLight != 0)
+        ++nearVersion_;
     near_ = {};
     if (params.nearLight == 0) return;
+    const auto metres = [](float squared) { return std::sqrt(double(squared)); };
     NearOrder order;
-    order.factor = gather_.surfaceFactor;
+    order.surfaceFactor = gather_.surfaceFactor;
+    order.mediaFactor = gather_.mediaFactor;
     order.paths = uint32_t(settings_.nearPaths);
     order.first = inputs.view.data.frameIndex * order.paths;
-    order.settings.terms = inputs.terms & kIndirectOnSurfaces;
-    order.settings.clampDistance = std::sqrt(double(params.surfaceClampSquared));
+    order.onSurfaces = (inputs.terms & kIndirectOnSurfaces) != 0;
+    order.inMedia = (inputs.terms & ~kIndirectOnSurfaces) != 0 && inputs.media.count > 0;
+    order.settings.terms = inputs.terms & ~kDirectTerms;
+    order.settings.elsewhere = {metres(params.surfaceClampSquared), metres(params.clampSquared),
+                                metres(params.mediumClampSquared), double(params.relaxed)};
+    order.settings.clampDistance = order.settings.elsewhere.betweenSurfaces;
     order.settings.middle = dvec3(params.content);
-    if (params.content.w > 0) order.settings.radius = 1 / std::sqrt(double(params.content.w));
+    if (params.content.w > 0) {
+        order.settings.radius = 1 / std::sqrt(double(params.content.w));
+        order.settings.clampDistance = kBoundOfPaths * order.settings.radius;
+    }
     order.settings.leastRoughness = double(params.leastRoughness);
     const Stopwatch watch(times_.near);
-    near_ = lostBetweenSurfaces(inputs.view.data, scene_.scene(), scene_.emission(), order);
+    near_ = missedLight(inputs.view.data, scene_.scene(), scene_.emission(), order);
 }
 
 VplGather VplTechnique::gather(const plugin::FrameInputs& inputs) const {
@@ -248,7 +261,7 @@ VplGather VplTechnique::gather(const plugin::FrameInputs& inputs) const {
     const double finer = std::pow(frames, 1.0 / 6);
     params.mediumClampSquared = squared(mean * double(settings_.surfaceClamp));
     // Where paths bring what it takes away, it costs no light, and stays wide for less noise.
-    params.nearLight = makesUpBetweenSurfaces(inputs) ? 1 : 0;
+    params.nearLight = followsWhatIsMissed(inputs) ? 1 : 0;
     params.surfaceClampSquared = params.nearLight != 0
                                      ? squared(meanDistanceOf(set_.positions, scene_.content(), 1) *
                                                double(settings_.surfaceClamp) / finer)
@@ -283,11 +296,11 @@ plugin::FrameOutputs VplTechnique::addPasses(fg::FrameGraph& graph,
     makeLights(inputs);
     gather_ = gather(inputs);
     makeNear(inputs);
-    buffers_ =
-        addVplUpload(graph, inputs,
-                     {&set_, &maps_, &points_, &scene_.triangles(), &scene_.tree(), &near_.squares,
-                      lightsKey_, walksKey_, scene_.surfacesKey(), nearVersion_},
-                     gather_.params);
+    buffers_ = addVplUpload(graph, inputs,
+                            {&set_, &maps_, &points_, &scene_.triangles(), &scene_.tree(),
+                             &near_.onSurfaces, &near_.inMedia, lightsKey_, walksKey_,
+                             scene_.surfacesKey(), nearVersion_},
+                            gather_.params);
     plugin::FrameOutputs outputs;
     if (inputs.terms & kIndirectOnSurfaces)
         outputs.surfaceRadiance = addVplSurfaces(graph, inputs, buffers_, gather_);

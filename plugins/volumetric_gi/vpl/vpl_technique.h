@@ -31,7 +31,7 @@ private:
     void makeMaps(uint32_t generation);
     void renewSome(const WalkOrder& order, uint64_t lightsKey);
     void choose(const plugin::FrameInputs& inputs, const WalkOrder& order, uint32_t candidates);
-    [[nodiscard]] bool makesUpBetweenSurfaces(const plugin::FrameInputs& inputs) const;
+    [[nodiscard]] bool followsWhatIsMissed(const plugin::FrameInputs& inputs) const;
     void makeNear(const plugin::FrameInputs& inputs);
     [[nodiscard]] VplGather gather(const plugin::FrameInputs& inputs) const;
 
@@ -49,7 +49,7 @@ private:
              nextTurn_ = 0;    // walks that are of an earlier scene; the next one to be renewed
     uint32_t walksTraced_ = 0; // in this frame
     uint64_t nearVersion_ = 0;
-    NearLight near_; // what the bound takes away between surfaces
+    NearLight near_; // what the bound takes away and no step in media makes up for
     struct {
         float walks = 0, choice = 0, maps = 0, near = 0;
     } times_; // of this frame, milliseconds

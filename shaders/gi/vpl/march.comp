@@ -8,7 +8,16 @@ layout(local_size_x = 8, local_size_y = 8) in;
 layout(std140) uniform Params { MarchParams params; };
 uniform sampler2D depth;
 uniform sampler2D gathered; // with kMarchFill: what is there already; w: 0 where nothing is
+layout(std430) readonly buffer VplNear { vec4 vplNear[]; }; // nits that neither gathering nor its step near by brings, by square
 layout(rgba32f) writeonly uniform image2D inScatter;
+
+/// Of the square that a pixel lies in.
+vec3 nearLightOf(ivec2 pixel, ivec2 size) {
+    if (vpl.nearLight == 0u) return vec3(0.0);
+    ivec2 square = pixel / int(params.factor);
+    int across = (size.x + int(params.factor) - 1) / int(params.factor);
+    return vplNear[square.y * across + square.x].rgb;
+}
 
 void main() {
     ivec2 ray = ivec2(gl_GlobalInvocationID.xy);
@@ -19,7 +28,7 @@ void main() {
         ivec2 pixel = fills ? ray : marchedPixel(ray, params, textureSize(depth, 0));
         vec2 centre = vec2(pixel) + 0.5;
         float distance = rayDistanceFromDepth(centre, texelFetch(depth, pixel, 0).r);
-        light = vec4(lightScatteredAlong(cameraRay(centre), distance, uvec2(ray)), 1.0);
+        light = vec4(lightScatteredAlong(cameraRay(centre), distance, uvec2(ray)) + nearLightOf(pixel, textureSize(depth, 0)), 1.0);
     }
     imageStore(inScatter, ray, light);
 }

@@ -22,9 +22,12 @@ vec3 phaseDirection(Segment s, vec3 direction, vec3 u, out float weight) {
     return normalize(frameAround(direction) * vec3(sine * cos(angle), sine * sin(angle), cosine));
 }
 
-/// 1/b of a point in a segment: no farther than a free path, or what the bound takes away would be most of the light, and has to be followed on and on.
-float localClampSquared(vec3 position, Segment s) {
-    float freePath = s.size / max(maximumOf(s.depth), 1e-30);
+/// 1/b of a point in a medium: no farther than the free path there, or what the bound takes away would be most of the light, and has to be followed on
+/// and on. As the processor has it (InstantRadiosity::reachElsewhere).
+float localClampSquared(vec3 position) {
+    vec3 extinction = vec3(0.0);
+    for (uint m = 0u; m < mediumCount(); ++m) extinction += media[m].extinction.rgb * mediumDensity(m, position);
+    float freePath = 1.0 / max(maximumOf(extinction), 1e-15);
     return min(vplClampScale(position) * vpl.clampSquared, freePath * freePath);
 }
 
@@ -48,7 +51,7 @@ vec3 evenCompensation(vec3 held, float clampSquared, Segment s, Ray ray, vec3 u,
 /// Light that a segment scatters at `position` against `direction`: of one class of walks, and what compensation makes up for, from another's.
 /// A loop, for shaders are compiled with all that they call in place: walksInMedium() is to stand here once.
 vec3 gatherAt(uint number, uint other, vec3 position, vec3 direction, Segment s, vec4 u) {
-    float clampSquared = localClampSquared(position, s);
+    float clampSquared = localClampSquared(position);
     vec3 light = vec3(0.0);
     vec3 weight = vec3(1.0);
     Ray back = Ray(position, direction);

@@ -8,7 +8,7 @@ layout(local_size_x = 8, local_size_y = 8) in;
 layout(std140) uniform Params { MarchParams params; };
 uniform sampler2D squares; // the parts of SurfaceLight side by side
 uniform sampler2D transmittance; // of media in view
-layout(std430) readonly buffer VplNear { vec4 vplNear[]; }; // that the bound takes away between surfaces, by square: nits over reflectance()
+layout(std430) readonly buffer VplNear { vec4 vplNear[]; }; // that neither gathering nor its step near by brings, by square: nits over reflectance()
 layout(rgba32f) writeonly uniform image2D surfaceRadiance; // w: 0 where what is there is not all yet
 
 const float kFar = 0.1; // of the distance to the eye: on a surface that is seen at a grazing angle neighbouring pixels lie far apart
