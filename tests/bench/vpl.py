@@ -52,7 +52,7 @@ def cloud(haze):
 
 
 def errors_table(bench, content, wanted, frames):
-    head = ["scene", "high, one frame: surfaces", "media", "ultra, frames", "surfaces", "media", "reference's own noise: surfaces", "media"]
+    head = ["scene", "high, one frame: surfaces", "media", "picture", "ultra, frames", "surfaces", "media", "picture", "reference's own noise: surfaces", "media"]
     rows = []
     for name, scene, fewer in [("cornell, no fog", load("content/cornell.scene.json"), 1), *scenes(content), ("cloud", cloud(False), 1 / 4), ("cloud in haze", cloud(True), 1 / 4)]:
         if wanted and not any(w in name for w in wanted):
@@ -66,7 +66,7 @@ def errors_table(bench, content, wanted, frames):
         many, _ = bench.picture(path, "many", "--converge", "--frames", count, quality="ultra")
         fog = any("medium" in node for node in scene["nodes"])
         solid = "cloud" not in name
-        cells = lambda picture, *options: ["{:.3f}, {:.3f}".format(*bench.compare(picture, reference, terms, *options)) if there else "" for terms, there in ((SURFACES, solid), (MEDIA, fog))]
+        cells = lambda picture, *options: ["{:.3f}, {:.3f}".format(*bench.compare(picture, reference, terms, *options)) if there else "" for terms, there in ((SURFACES, solid), (MEDIA, fog), (None, True))]
         rows.append([name, *cells(one, "--reduce"), str(count), *cells(many), noise(SURFACES) if solid else "", noise(MEDIA) if fog else ""])
     return table(head, rows)
 
@@ -133,7 +133,7 @@ What the columns mean and why the numbers are what they are: [techniques/vpl.md]
 
 ## Error
 Against the reference ({SIZE} pixels, {arguments.spp} samples for each, half as many for the smoke, eight times as many for fog of τ 8, four times for Sponza and the cloud): relmse and energy
-([compare.md](compare.md)) of the indirect terms on surfaces and of those in media. One frame is {FINE} pixels, of which averages of 8x8 are compared (`tyndall compare --reduce`): one sample a
+([compare.md](compare.md)) of the indirect terms on surfaces, of those in media, and of the picture with direct light and all. One frame is {FINE} pixels, of which averages of 8x8 are compared (`tyndall compare --reduce`): one sample a
 pixel has steps where the reference has smooth outlines, at {SIZE} 0.05 of squared error whatever the light. Ultra is an average of frames of {SIZE} with new walks in each. The reference's own
 noise is told from one of other random numbers: what is less cannot be told from nothing.
 
