@@ -61,7 +61,7 @@ const SlabRow kRows[] = {
      0,
      2048,
      1,
-     0.02},
+     0.015},
     {"MCML-vdH35, albedo 0.9, g 0.75, tau 2",
      0.9,
      0.75,

@@ -91,7 +91,7 @@ TEST(MissedLight, WithABoundWithoutEndItIsAllLightBetweenSurfaces) {
     const double error = std::hypot(found.error, std::sqrt(variance));
     printf("all of it: %.5f and %.5f, %+.2f standard errors of %.2f %%\n", mean, truth,
            (mean - truth) / error, 100 * error / truth);
-    EXPECT_NEAR(mean, truth, 3 * error);
+    EXPECT_NEAR(mean, truth, 3 * error); // beyond by chance: one in 370
     EXPECT_LT(error, 0.03 * truth) << "too coarse to tell anything";
     EXPECT_EQ(found.nonFinite, 0u);
 }

@@ -58,7 +58,7 @@ private:
 constexpr uint32_t kPointSets = 8;
 
 /// With which paths gather their own walk, over the content's radius. The light of one walk is all that lamps give: nearer, it outshines the picture (at 0.3
-/// paths in a hall in the sun have 1.6 times the noise); farther, dense media have more noise (at 1 the cloud and fog of τ 8 have a third to a half more).
+/// paths in a hall in the sun have 1.4 to 1.7 times the noise); farther, dense media have more (at 1 the cloud and fog of τ 8 have 1.3 to 1.5 times that of 0.3).
 constexpr double kBoundOfPaths = 0.6;
 
 /// With which it is found out what lights matter.
@@ -199,7 +199,8 @@ void VplTechnique::choose(const plugin::FrameInputs& inputs, const WalkOrder& or
 
 /// By paths on the processor: in averaged frames alone, for they are noise that has to be averaged. Not where walks go through guesses of the media.
 bool VplTechnique::followsWhatIsMissed(const plugin::FrameInputs& inputs) const {
-    return settings_.nearPaths > 0 && settings_.fromSurfaces && settings_.fromMedia &&
+    return settings_.nearPaths > 0 && std::max(settings_.clamp, settings_.surfaceClamp) > 0 &&
+           settings_.fromSurfaces && settings_.fromMedia &&
            settings_.compensation == int32_t(gpu::kVplTraced) &&
            settings_.show != int32_t(gpu::kVplShowLost) && converges(inputs) && !scene_.guessed();
 }
@@ -217,7 +218,8 @@ void VplTechnique::makeNear(const plugin::FrameInputs& inputs) {
     order.paths = uint32_t(settings_.nearPaths);
     order.first = inputs.view.data.frameIndex * order.paths;
     order.onSurfaces = (inputs.terms & kIndirectOnSurfaces) != 0;
-    order.inMedia = (inputs.terms & ~kIndirectOnSurfaces) != 0 && inputs.media.count > 0;
+    order.inMedia = (inputs.terms & ~kIndirectOnSurfaces) != 0 && inputs.media.count > 0 &&
+                    inputs.transmittance; // else none is in view
     order.settings.terms = inputs.terms & ~kDirectTerms;
     order.settings.elsewhere = {metres(params.surfaceClampSquared), metres(params.clampSquared),
                                 metres(params.mediumClampSquared), double(params.relaxed)};
