@@ -7,7 +7,7 @@
 
 #include "core/settings.h"
 #include "framegraph/frame_graph.h"
-#include "renderer/frame_resources.h"
+#include "plugin/frame_resources.h"
 #include "shared/march.h"
 #include "transport/terms.h"
 

@@ -161,7 +161,7 @@ Outcome ReferenceRun::render() {
         options_.spp == 0 && options_.seconds == 0 && options_.targetError == 0;
     CHECK(!withoutGoal);
     // An error can be told once every stream has a sample or two.
-    const uint32_t fewest = 2 * reference::kStreams;
+    const uint32_t fewest = 2 * tracing::kStreams;
     const auto goalReached = [&] {
         const uint32_t have = render_->film().samples();
         if (have == 0) return false;
@@ -222,7 +222,7 @@ Outcome ReferenceRun::writePicture() {
 
 Outcome ReferenceRun::writeReport() const {
     if (options_.report.empty()) return {};
-    const reference::PathCounts& counts = render_->counts();
+    const tracing::PathCounts& counts = render_->counts();
     const uint64_t pixels = uint64_t(settings_.width) * uint64_t(settings_.height);
     const uint64_t taken = uint64_t(render_->film().samples() - samplesBefore_) * pixels;
     const nlohmann::ordered_json report = {
@@ -264,7 +264,7 @@ Outcome ReferenceRun::run() {
     if (Outcome written = writePicture(); !written.ok()) return written;
     std::error_code error;
     if (!options_.keep) fs::remove(resumePath(), error);
-    const reference::PathCounts& counts = render_->counts();
+    const tracing::PathCounts& counts = render_->counts();
     log::info(fmt::format("wrote {}: {} samples a pixel in {}, estimated relmse {:.2g}", output_,
                           render_->film().samples(), durationText(rendering_), error_));
     if (counts.nonFinite > 0)

@@ -72,8 +72,8 @@ Result<void> checkNumbers(const ReferenceOptions& options, reference::RenderSett
         return wrong(
             fmt::format("--transmittance {}: there are exact and ratio", options.transmittance));
     settings.path.transmittance = options.transmittance == "ratio"
-                                      ? reference::TransmittanceMode::Ratio
-                                      : reference::TransmittanceMode::Exact;
+                                      ? tracing::TransmittanceMode::Ratio
+                                      : tracing::TransmittanceMode::Exact;
     settings.seed = options.seed;
     settings.threads = options.threads;
     return {};

@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include "core/image.h"
-#include "reference/sampler.h"
+#include "tracing/sampler.h"
 
 namespace tyndall::reference {
 namespace {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "core/image.h"
-#include "reference/tracer_scene.h"
+#include "reference/path_settings.h"
 
 namespace tyndall::reference {
 

@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-#include "reference/sampler.h"
+#include "tracing/sampler.h"
 
 namespace tyndall::reference {
 

@@ -4,7 +4,7 @@
 #include <cstring>
 
 #include "reference/render.h"
-#include "reference/sampler.h"
+#include "tracing/sampler.h"
 
 namespace tyndall::reference {
 namespace {

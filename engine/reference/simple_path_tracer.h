@@ -3,7 +3,7 @@
 // at a time, as they would really go: they fly, are absorbed or scattered by chance, and bring home what they run into. It aims
 // at nothing, so lights without extent stay dark, and it is slow.
 
-#include "reference/tracer_scene.h"
+#include "reference/path_settings.h"
 
 namespace tyndall::reference {
 

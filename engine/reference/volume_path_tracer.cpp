@@ -20,15 +20,6 @@ constexpr double kLeastAimChance = 0.1;
 
 } // namespace
 
-void PathCounts::add(const PathCounts& other) {
-    paths += other.paths;
-    segments += other.segments;
-    shadowRays += other.shadowRays;
-    cutOff += other.cutOff;
-    nonFinite += other.nonFinite;
-    negative += other.negative;
-}
-
 VolumePathTracer::VolumePathTracer(const TracerScene& scene, const PathSettings& settings)
     : scene_(scene), settings_(settings), segment_(*scene.media) {
     const int longest = longestPath(settings_.terms);

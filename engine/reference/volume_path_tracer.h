@@ -9,18 +9,9 @@
 // Media are flown through by null collisions under spectral multiple importance sampling (PathWeights). Paths that carry little end by
 // chance; the others are raised to a fixed weight, never beyond it.
 
-#include "reference/tracer_scene.h"
+#include "reference/path_settings.h"
 
 namespace tyndall::reference {
-
-/// What went on in all paths so far.
-struct PathCounts {
-    uint64_t paths = 0, segments = 0, shadowRays = 0;
-    uint64_t cutOff = 0;    // paths ended by PathSettings::kLongest
-    uint64_t nonFinite = 0; // contributions that were not finite, left out
-    uint64_t negative = 0;  // contributions below 0
-    void add(const PathCounts& other);
-};
 
 /// One for each thread: it keeps its scratch memory from path to path.
 class VolumePathTracer {

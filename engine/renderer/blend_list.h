@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/result.h"
-#include "renderer/frame_resources.h"
+#include "plugin/frame_resources.h"
 #include "renderer/gpu_scene.h"
 #include "shared/blend.h"
 

@@ -4,7 +4,7 @@
 #include "framegraph/frame_graph.h"
 #include "renderer/blend_list.h"
 #include "renderer/environment_map.h"
-#include "renderer/frame_resources.h"
+#include "plugin/frame_resources.h"
 #include "renderer/surface_settings.h"
 #include "renderer/term_images.h"
 

@@ -2,7 +2,7 @@
 // From light on surfaces and in media to the images of the terms, and to their sum.
 
 #include "framegraph/frame_graph.h"
-#include "renderer/frame_resources.h"
+#include "plugin/frame_resources.h"
 #include "renderer/term_images.h"
 
 namespace tyndall {

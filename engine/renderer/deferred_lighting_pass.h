@@ -3,7 +3,7 @@
 
 #include "framegraph/frame_graph.h"
 #include "renderer/environment_map.h"
-#include "renderer/frame_resources.h"
+#include "plugin/frame_resources.h"
 #include "renderer/surface_settings.h"
 #include "transport/terms.h"
 

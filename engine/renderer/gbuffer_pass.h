@@ -2,7 +2,7 @@
 // Surfaces into the G-buffer.
 
 #include "framegraph/frame_graph.h"
-#include "renderer/frame_resources.h"
+#include "plugin/frame_resources.h"
 #include "renderer/gpu_scene.h"
 #include "renderer/surface_settings.h"
 

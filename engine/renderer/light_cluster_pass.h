@@ -4,7 +4,7 @@
 
 #include <span>
 
-#include "renderer/frame_resources.h"
+#include "plugin/frame_resources.h"
 #include "renderer/light_settings.h"
 
 namespace tyndall {

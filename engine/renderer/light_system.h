@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "renderer/environment_lights.h"
-#include "renderer/frame_resources.h"
+#include "plugin/frame_resources.h"
 #include "renderer/light_cluster_pass.h"
 #include "renderer/light_settings.h"
 #include "renderer/medium_lights.h"

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "renderer/frame_resources.h"
+#include "plugin/frame_resources.h"
 #include "scene/scene.h"
 #include "shared/light.h"
 #include "shared/medium.h"

@@ -13,7 +13,7 @@
 
 #include "core/result.h"
 #include "framegraph/gl/executor.h"
-#include "renderer/frame_resources.h"
+#include "plugin/frame_resources.h"
 #include "renderer/media_atlas.h"
 #include "renderer/media_placement.h"
 #include "renderer/media_settings.h"

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/version.h"
-#include "renderer/frame_resources.h"
+#include "plugin/frame_resources.h"
 #include "renderer/shadow_views.h"
 
 namespace tyndall {

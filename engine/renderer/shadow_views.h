@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "core/math.h"
-#include "renderer/frame_resources.h"
+#include "plugin/frame_resources.h"
 #include "renderer/light_settings.h"
 #include "shared/light.h"
 #include "shared/shadow.h"

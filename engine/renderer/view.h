@@ -4,7 +4,7 @@
 #include <array>
 
 #include "core/result.h"
-#include "renderer/frame_resources.h"
+#include "plugin/frame_resources.h"
 #include "scene/scene.h"
 
 namespace tyndall {

@@ -27,12 +27,12 @@ struct VplTriangle {
     vec4 plane;  // n·p + w = 0, n unit; 0 without area
     vec4 corner; // render space; w: 0 where rays pass parts of it, else 1
     vec3 second; // dot(second, p - corner): barycentric coordinate of the second corner
-    uint coversLow;  // a bit for each piece that no ray passes (reference::SceneTriangle)
+    uint coversLow;  // a bit for each piece that no ray passes (tracing::SceneTriangle)
     vec3 third;      // as `second`, of the third
     uint coversHigh;
 };
 
-/// As reference::TreeNode.
+/// As tracing::TreeNode.
 struct VplTreeNode {
     vec3 minimum;
     uint next;

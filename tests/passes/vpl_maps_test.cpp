@@ -40,8 +40,8 @@ const char* const kOpenRoom = R"({"tyndall": 1, "nodes": [
 class Maps {
 public:
     explicit Maps(const char* json) : scene_(sceneFromJson(json)) {
-        surfaces_ = std::move(reference::SurfaceScene::build(scene_, dvec3(0), 1).value());
-        for (const reference::SceneTriangle& triangle : surfaces_->triangles())
+        surfaces_ = std::move(tracing::SurfaceScene::build(scene_, dvec3(0), 1).value());
+        for (const tracing::SceneTriangle& triangle : surfaces_->triangles())
             triangles_.push_back(packTriangle(triangle));
     }
 
@@ -106,7 +106,7 @@ public:
     /// Metres from a light to the nearest point of any surface.
     [[nodiscard]] double nearest(size_t light) const {
         double squared = 1e30;
-        for (const reference::SceneTriangle& t : surfaces_->triangles())
+        for (const tracing::SceneTriangle& t : surfaces_->triangles())
             for (int i = 0; i <= 40; ++i)
                 for (int k = 0; k <= 40 - i; ++k) {
                     const dvec3 off = t.corners[0] + (t.corners[1] - t.corners[0]) * (i / 40.0) +
@@ -119,7 +119,7 @@ public:
 
 private:
     Scene scene_;
-    std::unique_ptr<reference::SurfaceScene> surfaces_;
+    std::unique_ptr<tracing::SurfaceScene> surfaces_;
     std::vector<gpu::VplTriangle> triangles_;
     VplSet lights_;
     std::vector<uint32_t> rays_;

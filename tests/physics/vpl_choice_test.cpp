@@ -20,14 +20,14 @@ protected:
         medium.scattering = vec3(0.05f);
         Node& node = scene_.nodes.emplace_back();
         node.medium = 0;
-        media_ = std::make_unique<reference::MediaField>(scene_, dvec3(0));
-        surfaces_ = std::move(reference::SurfaceScene::build(scene_, dvec3(0), 1).value());
+        media_ = std::make_unique<tracing::MediaField>(scene_, dvec3(0));
+        surfaces_ = std::move(tracing::SurfaceScene::build(scene_, dvec3(0), 1).value());
         std::mt19937_64 random(3);
         std::uniform_real_distribution<double> in(-10, 10), unit(0, 1);
         all_.vertices.resize(200);
         for (auto& walk : all_.vertices)
             for (int k = 0; k < 4; ++k) {
-                reference::WalkVertex& light = walk.emplace_back();
+                tracing::WalkVertex& light = walk.emplace_back();
                 light.position = {in(random), in(random), in(random)};
                 light.travel = {0, 0, 1};
                 light.power = dvec3(unit(random) * unit(random), 0.2, 0.1);
@@ -41,7 +41,7 @@ protected:
     static double given(const Walks& walks, const dvec3& at) {
         double sum = 0;
         for (const auto& walk : walks.vertices)
-            for (const reference::WalkVertex& light : walk) {
+            for (const tracing::WalkVertex& light : walk) {
                 const dvec3 way = light.position - at;
                 sum += light.power.x / std::max(glm::dot(way, way), 1.0);
             }
@@ -68,8 +68,8 @@ protected:
     }
 
     Scene scene_;
-    std::unique_ptr<reference::MediaField> media_;
-    std::unique_ptr<reference::SurfaceScene> surfaces_;
+    std::unique_ptr<tracing::MediaField> media_;
+    std::unique_ptr<tracing::SurfaceScene> surfaces_;
     Walks all_;
     std::vector<SeenPoint> seen_;
 };

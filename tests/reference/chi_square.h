@@ -5,8 +5,8 @@
 #include <cmath>
 #include <vector>
 
-#include "reference/ray.h"
-#include "reference/sampler.h"
+#include "tracing/ray.h"
+#include "tracing/sampler.h"
 
 namespace tyndall::validation {
 
@@ -31,7 +31,7 @@ public:
                 for (int i = 0; i < kFine * kFine; ++i) {
                     const double z = 1 - 2 * (row + (i / kFine + 0.5) / kFine) / rows_,
                                  u = (column + (i % kFine + 0.5) / kFine) / columns_ - 0.5;
-                    mass += density(reference::directionAround(z, u));
+                    mass += density(tracing::directionAround(z, u));
                 }
                 const double expected =
                     drawn * mass * 4 * kPi / (rows_ * columns_ * double(kFine * kFine));

@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "agreement_scenes.h"
-#include "reference/guessed_media.h"
+#include "tracing/proxy_media.h"
 #include "validation/scenes.h"
 
 namespace tyndall::validation {
@@ -20,12 +20,12 @@ struct Sums {
 };
 
 template <typename MakeWalk> Sums sumsOf(uint32_t walks, MakeWalk&& make) {
-    std::vector<reference::WalkVertex> walk;
+    std::vector<tracing::WalkVertex> walk;
     std::array<double, Sums::kCount> sum{}, squares{};
     for (uint32_t i = 0; i < walks; ++i) {
         make(i, walk);
         std::array<double, Sums::kCount> one{};
-        for (const reference::WalkVertex& vertex : walk) {
+        for (const tracing::WalkVertex& vertex : walk) {
             const int at = (vertex.medium ? 6 : 0) + 2 * std::min(vertex.scatterings - 1, 2);
             const double power = vertex.power.x + vertex.power.y + vertex.power.z;
             EXPECT_TRUE(std::isfinite(power) && power >= 0);
@@ -47,8 +47,8 @@ template <typename MakeWalk> Sums sumsOf(uint32_t walks, MakeWalk&& make) {
     return result;
 }
 
-reference::TracerScene traced(const Scene& scene) {
-    auto result = reference::TracerScene::build(scene, dvec3(0), 1);
+tracing::TracerScene traced(const Scene& scene) {
+    auto result = tracing::TracerScene::build(scene, dvec3(0), 1);
     if (!result.ok()) throw std::runtime_error(result.message());
     return std::move(*result);
 }
@@ -57,47 +57,47 @@ reference::TracerScene traced(const Scene& scene) {
 class Kept {
 public:
     explicit Kept(const Scene& scene)
-        : guessed_(reference::guessMedia(scene, dvec3(0))), truth_(scene, dvec3(0)) {
+        : guessed_(tracing::makeProxyMedia(scene, dvec3(0))), truth_(scene, dvec3(0)) {
         traced_ = traced(scene);
         // Lights know the media that glow.
         traced_.lights.reset();
         *traced_.media = std::move(guessed_.field);
         traced_.lights =
-            std::make_unique<reference::Lights>(scene, dvec3(0), *traced_.surfaces, *traced_.media);
+            std::make_unique<tracing::Lights>(scene, dvec3(0), *traced_.surfaces, *traced_.media);
         emission_.emplace(traced_);
-        walker_.emplace(traced_, *emission_, reference::WalkSettings{});
+        walker_.emplace(traced_, *emission_, tracing::WalkSettings{});
     }
     [[nodiscard]] uint64_t hash() const { return guessed_.hash; }
-    void trace(reference::Sampler& sampler, std::vector<reference::WalkVertex>& walk) {
+    void trace(tracing::Sampler& sampler, std::vector<tracing::WalkVertex>& walk) {
         walker_->trace(sampler, walk);
     }
-    void weigh(std::vector<reference::WalkVertex>& walk) const {
-        reference::reweigh(walker_->start(), walk, *traced_.media, truth_);
+    void weigh(std::vector<tracing::WalkVertex>& walk) const {
+        tracing::reweigh(walker_->start(), walk, *traced_.media, truth_);
     }
 
 private:
-    reference::GuessedMedia guessed_;
-    reference::MediaField truth_;
-    reference::TracerScene traced_;
-    std::optional<reference::LightEmission> emission_;
-    std::optional<reference::LightWalker> walker_;
+    tracing::ProxyMedia guessed_;
+    tracing::MediaField truth_;
+    tracing::TracerScene traced_;
+    std::optional<tracing::LightEmission> emission_;
+    std::optional<tracing::LightWalker> walker_;
 };
 
 class KeptWalks : public ::testing::TestWithParam<int> {};
 
 TEST_P(KeptWalks, HaveTheMeanOfWalksThatFollowTheMedia) {
     const AgreementScene made = agreementScene(GetParam());
-    const reference::TracerScene scene = traced(made.scene);
-    const reference::LightEmission emission(scene);
-    reference::LightWalker follower(scene, emission, {});
+    const tracing::TracerScene scene = traced(made.scene);
+    const tracing::LightEmission emission(scene);
+    tracing::LightWalker follower(scene, emission, {});
     Kept kept(made.scene);
     constexpr uint32_t kWalks = 200000;
     const Sums expected = sumsOf(kWalks, [&](uint32_t i, auto& vertices) {
-        reference::Sampler sampler(11, 1, i);
+        tracing::Sampler sampler(11, 1, i);
         follower.trace(sampler, vertices);
     });
     const Sums found = sumsOf(kWalks, [&](uint32_t i, auto& vertices) {
-        reference::Sampler sampler(12, 2, i);
+        tracing::Sampler sampler(12, 2, i);
         kept.trace(sampler, vertices);
         kept.weigh(vertices);
     });
@@ -145,10 +145,10 @@ TEST(KeptWalks, GoWhereTheyWentWhenMediaChangeALittle) {
     EXPECT_EQ(a.hash(), b.hash());
     EXPECT_NE(a.hash(), Kept(more).hash());
     EXPECT_NE(a.hash(), Kept(away).hash());
-    std::vector<reference::WalkVertex> before, anew;
+    std::vector<tracing::WalkVertex> before, anew;
     double change = 0, all = 0;
     for (uint32_t i = 0; i < 500; ++i) {
-        reference::Sampler sampler(3, 0, i), same(3, 0, i);
+        tracing::Sampler sampler(3, 0, i), same(3, 0, i);
         a.trace(sampler, before);
         b.trace(same, anew);
         ASSERT_EQ(before.size(), anew.size());

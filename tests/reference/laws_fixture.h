@@ -8,10 +8,10 @@
 
 namespace tyndall::validation {
 
-using reference::CameraRays;
-using reference::Ray;
-using reference::Sampler;
-using reference::TermLight;
+using tracing::CameraRays;
+using tracing::Ray;
+using tracing::Sampler;
+using tracing::TermLight;
 using reference::VolumePathTracer;
 using Tracers = std::vector<VolumePathTracer>;
 
@@ -24,7 +24,7 @@ inline Probe gaze(std::shared_ptr<const Stage> stage, const dvec3& from, const d
     probe.sample = [=](Tracers& tracers, Sampler& sampler) {
         const dvec2 u = sampler.next2();
         const dvec3 at =
-            to + radius * std::cbrt(sampler.next1()) * reference::directionAround(1 - 2 * u.x, u.y);
+            to + radius * std::cbrt(sampler.next1()) * tracing::directionAround(1 - 2 * u.x, u.y);
         TermLight light;
         tracers[0].trace({{from, glm::normalize(at - from)}, 0}, sampler, light);
         return light.sum()[channel];
@@ -38,8 +38,8 @@ inline void expectSameLight(const Probe& a, const Probe& b, uint64_t seed, const
                             double segments = 4e5, double slack = 0) {
     Effort effort;
     effort.segments = segments;
-    const Estimate first = measure(a, effort, reference::mixBits(2 * seed)),
-                   second = measure(b, effort, reference::mixBits(2 * seed + 1));
+    const Estimate first = measure(a, effort, tracing::mixBits(2 * seed)),
+                   second = measure(b, effort, tracing::mixBits(2 * seed + 1));
     const double error = std::hypot(first.error, second.error, slack * first.value);
     const double t = (first.value - second.value) / error;
     std::printf("%s: %.6g ± %.1g and %.6g ± %.1g, t %+.2f\n", what.c_str(), first.value,

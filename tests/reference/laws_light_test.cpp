@@ -91,7 +91,7 @@ TEST_P(ReferenceAiming, NotAtAllFromCollisionsAndFromSegmentsTooFindsTheSameLigh
     reference::PathSettings none, collisions, ratio;
     none.aimAtLights = false;
     collisions.aimFromSegments = false;
-    ratio.transmittance = reference::TransmittanceMode::Ratio;
+    ratio.transmittance = tracing::TransmittanceMode::Ratio;
     const dvec3 eye(0.2, 0.5, 4), to(0, -0.4, 0);
     const Probe full = gaze(stage, eye, to, 0.8);
     const uint64_t seed = 700 + 10 * uint64_t(lamp);
@@ -132,7 +132,7 @@ TEST(ReferenceLaws, AGlowingBallOfGasLightsAFloorAsFromItsMiddle) {
         Effort effort;
         effort.segments = 2e5;
         const Estimate light = measure(gaze(stage, {0.2, 2.5, 4}, to, 0, 1, lit), effort,
-                                       reference::mixBits(900 + uint64_t(10 * (x + 2))));
+                                       tracing::mixBits(900 + uint64_t(10 * (x + 2))));
         const double t = (light.value - expected) / light.error;
         std::printf("at %g m: %.6g ± %.1g where %.6g is right, t %+.2f\n", x, light.value,
                     light.error, expected, t);
@@ -202,7 +202,7 @@ Probe fluence(const Medium& smoke, const dvec3& lamp, const dvec3& at, bool surf
     probe.sample = [at, towards](Tracers& tracers, Sampler& sampler) {
         const dvec2 u = sampler.next2();
         const dvec3 direction =
-            reference::Frame(towards).toWorld(reference::directionAround(std::cos(kPi * u.x), u.y));
+            tracing::Frame(towards).toWorld(tracing::directionAround(std::cos(kPi * u.x), u.y));
         TermLight light;
         tracers[0].trace({{at, glm::normalize(direction)}, 0}, sampler, light);
         return light.sum().y * 0.5 * kPi * std::sin(kPi * u.x);

@@ -32,8 +32,8 @@ TEST(ReferenceMedia, AnUnevenAbsorberOfThreeColoursLetsEachThroughByItsOwnDepth)
     ASSERT_GT(depth.y, 0.1);
     Sampler unused(0, 0, 0);
     const dvec3 exact =
-        reference::transmittance(*stage->traced.media, {kEye, direction}, reference::kInfinity,
-                                 reference::TransmittanceMode::Exact, unused);
+        tracing::transmittance(*stage->traced.media, {kEye, direction}, tracing::kInfinity,
+                                 tracing::TransmittanceMode::Exact, unused);
     for (int c = 0; c < 3; ++c) {
         const double expected = std::exp(-depth[c]);
         EXPECT_NEAR(exact[c] / expected, 1, 1e-6);
@@ -46,9 +46,9 @@ TEST(ReferenceMedia, AnUnevenAbsorberOfThreeColoursLetsEachThroughByItsOwnDepth)
         tracked.stage = stage;
         tracked.segmentsPerSample = 4;
         tracked.sample = [&, c](Tracers&, Sampler& sampler) {
-            return reference::transmittance(*stage->traced.media, {kEye, direction},
-                                            reference::kInfinity,
-                                            reference::TransmittanceMode::Ratio, sampler)[c];
+            return tracing::transmittance(*stage->traced.media, {kEye, direction},
+                                            tracing::kInfinity,
+                                            tracing::TransmittanceMode::Ratio, sampler)[c];
         };
         const Estimate ratio = measure(tracked, effort, 200 + uint64_t(c));
         EXPECT_LE(std::abs(ratio.value - expected), 4 * ratio.error) << "channel " << c;

@@ -4,15 +4,15 @@
 #include <gtest/gtest.h>
 
 #include "chi_square.h"
-#include "reference/bsdf.h"
+#include "tracing/bsdf.h"
 
 namespace tyndall::validation {
 namespace {
 
-using reference::Bsdf;
-using reference::BsdfSample;
-using reference::Sampler;
-using reference::Surface;
+using tracing::Bsdf;
+using tracing::BsdfSample;
+using tracing::Sampler;
+using tracing::Surface;
 
 Surface surfaceOf(double roughness, double metallic, double specular) {
     Surface surface;

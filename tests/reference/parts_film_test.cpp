@@ -6,17 +6,17 @@
 
 #include "core/image.h"
 #include "reference/checkpoint.h"
-#include "reference/sampler.h"
+#include "tracing/sampler.h"
 #include "support/content.h"
 
 namespace tyndall::validation {
 namespace {
 
 using reference::Film;
-using reference::PathHistory;
-using reference::Sampler;
-using reference::Scattering;
-using reference::TermLight;
+using tracing::PathHistory;
+using tracing::Sampler;
+using tracing::Scattering;
+using tracing::TermLight;
 
 /// Pixels of independent samples of variance 1/12 · scale².
 Film noisyFilm(uint32_t samples, double scale) {
@@ -109,10 +109,10 @@ TEST(ReferencePathTerms, EveryHistoryHasTheTermOfItsLastTwoScatterings) {
     history.add(Scattering::Surface);
     EXPECT_EQ(history.termAfter(Scattering::Medium), Term::LVSE);
     EXPECT_EQ(history.count(), 1);
-    EXPECT_EQ(reference::longestPath(bit(Term::LE)), 0);
-    EXPECT_EQ(reference::longestPath(bit(Term::LE) | bit(Term::LVE)), 1);
-    EXPECT_EQ(reference::longestPath(bit(Term::LSVE)), 2);
-    EXPECT_EQ(reference::longestPath(bit(Term::LXVSE)), -1);
+    EXPECT_EQ(tracing::longestPath(bit(Term::LE)), 0);
+    EXPECT_EQ(tracing::longestPath(bit(Term::LE) | bit(Term::LVE)), 1);
+    EXPECT_EQ(tracing::longestPath(bit(Term::LSVE)), 2);
+    EXPECT_EQ(tracing::longestPath(bit(Term::LXVSE)), -1);
 }
 
 TEST(ReferenceSampler, NumbersDependOnSeedPixelAndSampleAlone) {

@@ -4,17 +4,17 @@
 #include <gtest/gtest.h>
 
 #include "chi_square.h"
-#include "reference/environment_source.h"
-#include "reference/light_source.h"
+#include "tracing/environment_source.h"
+#include "tracing/light_source.h"
 #include "validation/scenes.h"
 
 namespace tyndall::validation {
 namespace {
 
-using reference::EnvironmentSource;
-using reference::LightSample;
-using reference::LightSource;
-using reference::Sampler;
+using tracing::EnvironmentSource;
+using tracing::LightSample;
+using tracing::LightSource;
+using tracing::Sampler;
 
 Light lightOf(LightType type, float intensity, float radius) {
     Light light;
@@ -114,9 +114,9 @@ TEST(ReferenceEnvironment, DirectionsAreDrawnAsTheDensitySaysAndItAddsUpToOne) {
         const auto sample = source.sample({sampler.random(), sampler.random()});
         test.count(sample.direction);
         ASSERT_GT(sample.density, 0);
-        const dvec3 any = reference::directionAround(1 - 2 * sampler.random(), sampler.random());
+        const dvec3 any = tracing::directionAround(1 - 2 * sampler.random(), sampler.random());
         total += source.density(any) * 4 * kPi / kDrawn;
-        EXPECT_EQ(reference::maximumOf(source.radiance(any)) > 0 && !(source.density(any) > 0),
+        EXPECT_EQ(tracing::maximumOf(source.radiance(any)) > 0 && !(source.density(any) > 0),
                   false)
             << "light that is never aimed at";
     }
@@ -133,7 +133,7 @@ TEST(ReferenceEnvironment, RotationTurnsTheImageAboutTheVertical) {
     const double angle = double(0.6f);
     for (uint32_t i = 0; i < 100; ++i) {
         Sampler sampler(6, 0, i);
-        const dvec3 d = reference::directionAround(1 - 2 * sampler.random(), sampler.random());
+        const dvec3 d = tracing::directionAround(1 - 2 * sampler.random(), sampler.random());
         const dvec3 there(std::cos(angle) * d.x + std::sin(angle) * d.z, d.y,
                           -std::sin(angle) * d.x + std::cos(angle) * d.z); // right-handed about +Y
         EXPECT_NEAR(turned.radiance(there).y, straight.radiance(d).y, 1e-9);

@@ -4,19 +4,19 @@
 #include <gtest/gtest.h>
 
 #include "media/segment_integral.h"
-#include "reference/media_segment.h"
+#include "tracing/media_segment.h"
 #include "validation/scenes.h"
 
 namespace tyndall::validation {
 namespace {
 
-using reference::MediaField;
-using reference::MediaSegment;
-using reference::Ray;
-using reference::Sampler;
+using tracing::MediaField;
+using tracing::MediaSegment;
+using tracing::Ray;
+using tracing::Sampler;
 
 dvec3 anyDirection(Sampler& sampler) {
-    return reference::directionAround(1 - 2 * sampler.random(), sampler.random());
+    return tracing::directionAround(1 - 2 * sampler.random(), sampler.random());
 }
 
 dmat4 anyPlace(Sampler& sampler) {
@@ -50,8 +50,8 @@ TEST(ReferenceSegment, ExactTransmittanceIsThatOfTheSceneEnginesIntegral) {
             const Ray ray{2.0 * anyDirection(sampler), anyDirection(sampler)};
             const double length = 4 * sampler.random();
             const dvec3 depth = opticalDepth(medium, place, {ray.origin, ray.direction, length});
-            const dvec3 through = reference::transmittance(
-                field, ray, length, reference::TransmittanceMode::Exact, sampler);
+            const dvec3 through = tracing::transmittance(
+                field, ray, length, tracing::TransmittanceMode::Exact, sampler);
             for (int c = 0; c < 3; ++c)
                 EXPECT_NEAR(through[c], std::exp(-depth[c]), 1e-6 * std::exp(-depth[c]) + 1e-12)
                     << int(kind) << " " << i;
@@ -102,21 +102,21 @@ TEST_P(SegmentDraws, FlightsCollideAsOftenAsTheTransmittanceSays) {
     const MediaField field(maker.scene(), dvec3(0));
     const Ray ray{{0.1, 0.2, 2}, glm::normalize(dvec3(0.05, -0.1, -1))};
     MediaSegment segment(field);
-    reference::MediumPoint point;
+    tracing::MediumPoint point;
     dvec3 passed(0);
     constexpr uint32_t kFlights = 40000;
     for (uint32_t i = 0; i < kFlights; ++i) {
         Sampler sampler(24, uint64_t(GetParam()), i);
-        reference::PathWeights weights;
+        tracing::PathWeights weights;
         weights.hero = int(sampler.bits() % 3);
-        std::vector<reference::EmittedLight> emitted;
+        std::vector<tracing::EmittedLight> emitted;
         segment.start(ray, 4);
         if (!segment.fly(sampler, weights, point, emitted).collided)
             passed += weights.carried() / double(kFlights);
     }
     Sampler unused(0, 0, 0);
     const dvec3 through =
-        reference::transmittance(field, ray, 4, reference::TransmittanceMode::Exact, unused);
+        tracing::transmittance(field, ray, 4, tracing::TransmittanceMode::Exact, unused);
     // Weights are at most 3, values at most 1: a standard error of at most √(3·T/N).
     for (int c = 0; c < 3; ++c)
         EXPECT_NEAR(passed[c], through[c], 4 * std::sqrt(3 * through[c] / kFlights)) << c;

@@ -4,10 +4,10 @@
 
 #include <gtest/gtest.h>
 
-#include "reference/surface_scene.h"
+#include "tracing/surface_scene.h"
 #include "scene/primitives.h"
 
-namespace tyndall::reference {
+namespace tyndall::tracing {
 namespace {
 
 /// Thirty boxes and balls here and there.
@@ -98,4 +98,4 @@ TEST(MovingSurfaces, AreBuiltAnewWhereTheyAreOthers) {
 }
 
 } // namespace
-} // namespace tyndall::reference
+} // namespace tyndall::tracing

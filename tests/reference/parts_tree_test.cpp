@@ -4,9 +4,9 @@
 
 #include <gtest/gtest.h>
 
-#include "reference/triangle_tree.h"
+#include "tracing/triangle_tree.h"
 
-namespace tyndall::reference {
+namespace tyndall::tracing {
 namespace {
 
 /// Möller and Trumbore's test, for ends that lie off the plane; and is there a piece?
@@ -120,4 +120,4 @@ TEST(TriangleTree, OfNothingIsEmpty) {
 }
 
 } // namespace
-} // namespace tyndall::reference
+} // namespace tyndall::tracing

@@ -5,7 +5,7 @@
 #include <glm/ext/matrix_transform.hpp>
 #include <gtest/gtest.h>
 
-#include "reference/light_walk.h"
+#include "tracing/light_walk.h"
 #include "reference/render.h"
 #include "validation/scenes.h"
 
@@ -19,14 +19,14 @@ struct Mean {
 
 /// Of the power of rays that a scene's lights send out.
 Mean emittedPower(const Scene& scene, const Bounds& content = {}) {
-    auto traced = reference::TracerScene::build(scene, dvec3(0), 1);
+    auto traced = tracing::TracerScene::build(scene, dvec3(0), 1);
     if (!traced.ok()) throw std::runtime_error(traced.message());
-    const reference::LightEmission emission(*traced, content);
+    const tracing::LightEmission emission(*traced, content);
     constexpr uint32_t kRays = 20000;
     dvec3 sum(0);
     double squares = 0;
     for (uint32_t i = 0; i < kRays; ++i) {
-        reference::Sampler sampler(7, 0, i);
+        tracing::Sampler sampler(7, 0, i);
         const dvec3 power = emission.sample(sampler).power;
         sum += power / double(kRays);
         squares += glm::dot(power, power) / double(kRays);
@@ -148,19 +148,19 @@ TEST(LightEmission, AimingChangesNoPower) {
 }
 
 /// Of the power that comes to vertices in `where` after it has been scattered outside of it. A walk is one sample.
-Mean scatteredInto(const reference::TracerScene& scene, const Bounds& where,
+Mean scatteredInto(const tracing::TracerScene& scene, const Bounds& where,
                    const Bounds& content) {
-    const reference::LightEmission emission(scene, content);
-    reference::LightWalker walker(scene, emission, {});
-    std::vector<reference::WalkVertex> walk;
+    const tracing::LightEmission emission(scene, content);
+    tracing::LightWalker walker(scene, emission, {});
+    std::vector<tracing::WalkVertex> walk;
     constexpr uint32_t kWalks = 1600000;
     dvec3 sum(0);
     double squares = 0;
     for (uint32_t i = 0; i < kWalks; ++i) {
-        reference::Sampler sampler(11, 0, i);
+        tracing::Sampler sampler(11, 0, i);
         walker.trace(sampler, walk);
         dvec3 into(0);
-        for (const reference::WalkVertex& vertex : walk)
+        for (const tracing::WalkVertex& vertex : walk)
             if (vertex.scatterings > 1 && where.contains(vertex.position)) into += vertex.power;
         sum += into / double(kWalks);
         squares += into.x * into.x / double(kWalks);
@@ -189,7 +189,7 @@ TEST(LightWalker, AimingAtTheContentChangesNoLight) {
     }
     maker.addPointLight({0, 2, 0}, 10, 0);
     const Scene scene = maker.take();
-    auto traced = reference::TracerScene::build(scene, dvec3(0), 1);
+    auto traced = tracing::TracerScene::build(scene, dvec3(0), 1);
     ASSERT_TRUE(traced.ok()) << traced.message();
     const Mean plain = scatteredInto(*traced, around, {}),
                aimed = scatteredInto(*traced, around, around);

@@ -1,7 +1,7 @@
 tyndall_test(shaders_media LABEL shaders TIMEOUT 900
   SOURCES media_compute.cpp table_compute.cpp media_depth_test.cpp media_functions_test.cpp media_march_test.cpp
-  DEPENDS tyndall_gl_test_support Tyndall::renderer)
+  DEPENDS tyndall_gl_test_support Tyndall::renderer INTERNALS renderer)
 
 tyndall_test(shaders_media_passes LABEL shaders TIMEOUT 900
   SOURCES media_compute.cpp table_compute.cpp media_passes_test.cpp
-  DEPENDS tyndall_gl_test_support Tyndall::renderer)
+  DEPENDS tyndall_gl_test_support Tyndall::renderer INTERNALS renderer)

@@ -6,15 +6,15 @@
 #include <cstddef>
 
 #include "framegraph/hash.h"
-#include "reference/guessed_media.h"
+#include "tracing/proxy_media.h"
 
 namespace tyndall::volumetric_gi {
 namespace {
 
-static_assert(sizeof(gpu::VplTreeNode) == sizeof(reference::TreeNode));
-static_assert(offsetof(gpu::VplTreeNode, next) == offsetof(reference::TreeNode, next));
-static_assert(offsetof(gpu::VplTreeNode, triangle) == offsetof(reference::TreeNode, triangle));
-static_assert(gpu::kVplNothing == reference::TreeNode::kInner);
+static_assert(sizeof(gpu::VplTreeNode) == sizeof(tracing::TreeNode));
+static_assert(offsetof(gpu::VplTreeNode, next) == offsetof(tracing::TreeNode, next));
+static_assert(offsetof(gpu::VplTreeNode, triangle) == offsetof(tracing::TreeNode, triangle));
+static_assert(gpu::kVplNothing == tracing::TreeNode::kInner);
 
 /// Of surfaces, and of lights but for glowing media. Versions tell that nodes have moved, not which.
 struct Keys {
@@ -67,7 +67,7 @@ Bounds roughly(const Bounds& bounds) {
 
 } // namespace
 
-gpu::VplTriangle packTriangle(const reference::SceneTriangle& from) {
+gpu::VplTriangle packTriangle(const tracing::SceneTriangle& from) {
     gpu::VplTriangle triangle{};
     const dvec3 &corner = from.corners[0], a = from.corners[1] - corner,
                 b = from.corners[2] - corner;
@@ -86,11 +86,11 @@ gpu::VplTriangle packTriangle(const reference::SceneTriangle& from) {
 
 Result<void> TracedScene::updateSurfaces(const Scene& scene, const dvec3& origin) {
     scene_.surfaces.reset();
-    auto built = reference::SurfaceScene::build(scene, origin, 0);
+    auto built = tracing::SurfaceScene::build(scene, origin, 0);
     if (!built.ok()) return built.error();
     scene_.surfaces = std::move(*built);
-    const std::vector<reference::SceneTriangle> triangles = scene_.surfaces->triangles();
-    auto tree = reference::buildTriangleTree(triangles);
+    const std::vector<tracing::SceneTriangle> triangles = scene_.surfaces->triangles();
+    auto tree = tracing::buildTriangleTree(triangles);
     if (!tree.ok()) return tree.error();
     tree_ = std::move(*tree);
     hasHoles_ = std::any_of(triangles.begin(), triangles.end(),
@@ -103,10 +103,10 @@ Result<void> TracedScene::updateSurfaces(const Scene& scene, const dvec3& origin
 /// Surfaces that are what they were, but not all where they were.
 bool TracedScene::moveSurfaces(const Scene& scene, const dvec3& origin) {
     std::vector<uint32_t> moved;
-    reference::SurfaceScene& surfaces = *scene_.surfaces;
+    tracing::SurfaceScene& surfaces = *scene_.surfaces;
     if (!surfaces.move(scene, origin, moved)) return false;
     for (const uint32_t number : moved) {
-        const reference::MeshInstance& instance = surfaces.instances()[number];
+        const tracing::MeshInstance& instance = surfaces.instances()[number];
         for (uint32_t i = 0; i < instance.mesh->indices.size() / 3; ++i) {
             gpu::VplTriangle& triangle = triangles_[instance.firstTriangle + i];
             const uint64_t covers =
@@ -115,7 +115,7 @@ bool TracedScene::moveSurfaces(const Scene& scene, const dvec3& origin) {
         }
     }
     if (!moved.empty())
-        reference::refitTriangleTree(tree_, [&](uint32_t triangle) {
+        tracing::refitTriangleTree(tree_, [&](uint32_t triangle) {
             const uint32_t number = surfaces.instanceOf(triangle);
             return surfaces.corners(number, triangle - surfaces.instances()[number].firstTriangle);
         });
@@ -125,16 +125,16 @@ bool TracedScene::moveSurfaces(const Scene& scene, const dvec3& origin) {
 void TracedScene::updateMedia(const Scene& scene, const dvec3& origin, bool guessed) {
     scene_.lights.reset(); // keeps references to media
     if (!guessed) {
-        scene_.media = std::make_unique<reference::MediaField>(scene, origin);
+        scene_.media = std::make_unique<tracing::MediaField>(scene, origin);
         media_.reset();
         return;
     }
-    reference::GuessedMedia guess = reference::guessMedia(scene, origin);
+    tracing::ProxyMedia guess = tracing::makeProxyMedia(scene, origin);
     // Walks that are kept name the media that they went through: these stay while nothing about them changes.
     if (!media_ || guess.hash != guessHash_)
-        scene_.media = std::make_unique<reference::MediaField>(std::move(guess.field));
+        scene_.media = std::make_unique<tracing::MediaField>(std::move(guess.field));
     guessHash_ = guess.hash;
-    media_ = std::make_unique<reference::MediaField>(scene, origin);
+    media_ = std::make_unique<tracing::MediaField>(scene, origin);
 }
 
 Result<void> TracedScene::update(const plugin::FrameInputs& inputs, bool guessed) {
@@ -166,7 +166,7 @@ Result<void> TracedScene::update(const plugin::FrameInputs& inputs, bool guessed
     key_ = changes;
     updateMedia(scene, origin, guessed);
     scene_.lights =
-        std::make_unique<reference::Lights>(scene, origin, *scene_.surfaces, *scene_.media);
+        std::make_unique<tracing::Lights>(scene, origin, *scene_.surfaces, *scene_.media);
     Bounds content = scene.contentBounds();
     if (!content.empty()) {
         content.minimum -= origin;
@@ -174,7 +174,7 @@ Result<void> TracedScene::update(const plugin::FrameInputs& inputs, bool guessed
     }
     content = roughly(content);
     content_ = content;
-    emission_ = std::make_unique<reference::LightEmission>(scene_, content);
+    emission_ = std::make_unique<tracing::LightEmission>(scene_, content);
     walksKey_ = key_;
     if (guessed) {
         walksKey_ = fg::mixHash(fg::mixHash(guessHash_, keys.surfaces), keys.lights);

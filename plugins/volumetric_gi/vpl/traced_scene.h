@@ -4,14 +4,14 @@
 #include <string>
 
 #include "plugin/plugin_api.h"
-#include "reference/light_walk.h"
-#include "reference/triangle_tree.h"
+#include "tracing/light_walk.h"
+#include "tracing/triangle_tree.h"
 #include "shared/vpl.h"
 
 namespace tyndall::volumetric_gi {
 
 /// As shaders read it.
-gpu::VplTriangle packTriangle(const reference::SceneTriangle& triangle);
+gpu::VplTriangle packTriangle(const tracing::SceneTriangle& triangle);
 
 class TracedScene {
 public:
@@ -20,19 +20,19 @@ public:
     Result<void> update(const plugin::FrameInputs& inputs, bool guessed);
 
     /// What walks go through.
-    [[nodiscard]] const reference::TracerScene& scene() const { return scene_; }
-    [[nodiscard]] const reference::LightEmission& emission() const { return *emission_; }
+    [[nodiscard]] const tracing::TracerScene& scene() const { return scene_; }
+    [[nodiscard]] const tracing::LightEmission& emission() const { return *emission_; }
     /// Around what is in the scene, without the landscape that it stands in; render space.
     [[nodiscard]] const Bounds& content() const { return content_; }
     /// Are the media there guessed?
     [[nodiscard]] bool guessed() const { return media_ != nullptr; }
     /// The media as they are.
-    [[nodiscard]] const reference::MediaField& media() const {
+    [[nodiscard]] const tracing::MediaField& media() const {
         return guessed() ? *media_ : *scene_.media;
     }
     /// All triangles, and a tree over them, as shaders read them.
     [[nodiscard]] const std::vector<gpu::VplTriangle>& triangles() const { return triangles_; }
-    [[nodiscard]] const std::vector<reference::TreeNode>& tree() const { return tree_; }
+    [[nodiscard]] const std::vector<tracing::TreeNode>& tree() const { return tree_; }
     /// Are there triangles that rays pass parts of?
     [[nodiscard]] bool hasHoles() const { return hasHoles_; }
     /// Of everything that walks' courses follow from, of what they carry, and of the surfaces alone.
@@ -45,12 +45,12 @@ private:
     bool moveSurfaces(const Scene& scene, const dvec3& origin);
     void updateMedia(const Scene& scene, const dvec3& origin, bool guessed);
 
-    reference::TracerScene scene_;
-    std::unique_ptr<reference::MediaField> media_; // where those in scene_ are guessed
-    std::unique_ptr<reference::LightEmission> emission_;
+    tracing::TracerScene scene_;
+    std::unique_ptr<tracing::MediaField> media_; // where those in scene_ are guessed
+    std::unique_ptr<tracing::LightEmission> emission_;
     Bounds content_;
     std::vector<gpu::VplTriangle> triangles_;
-    std::vector<reference::TreeNode> tree_;
+    std::vector<tracing::TreeNode> tree_;
     bool hasHoles_ = false;
     const Scene* whole_ = nullptr;
     uint64_t changesKey_ = 0, key_ = 0, walksKey_ = 0, guessHash_ = 0, surfacesKey_ = 0,

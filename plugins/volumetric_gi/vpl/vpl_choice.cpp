@@ -8,7 +8,7 @@
 #include <tbb/parallel_for.h>
 
 #include "framegraph/hash.h"
-#include "volumetric_gi/vpl/vpl_near.h"
+#include "volumetric_gi/vpl/compensation_light.h"
 
 namespace tyndall::volumetric_gi {
 namespace {
@@ -22,9 +22,9 @@ constexpr size_t kPointsOfLight = 32;
 constexpr int kHalvings = 60;
 
 /// What a light gives to a point, watts per square metre and the like: only ratios count.
-double givenTo(const SeenPoint& point, const reference::WalkVertex& light,
-               const reference::SurfaceScene& surfaces, const reference::MediaField& media,
-               double least, reference::Sampler& sampler) {
+double givenTo(const SeenPoint& point, const tracing::WalkVertex& light,
+               const tracing::SurfaceScene& surfaces, const tracing::MediaField& media,
+               double least, tracing::Sampler& sampler) {
     const dvec3 way = light.position - point.position;
     const double distance = glm::length(way);
     if (!(distance > 0)) return 0;
@@ -32,13 +32,13 @@ double givenTo(const SeenPoint& point, const reference::WalkVertex& light,
     double cosine = 1;
     if (point.normal != dvec3(0)) cosine = glm::dot(point.normal, towards);
     if (!(cosine > 0)) return 0;
-    const double intensity = reference::meanOf(light.intensity(-towards));
+    const double intensity = tracing::meanOf(light.intensity(-towards));
     if (!(intensity > 0)) return 0;
-    const reference::Ray shadow{point.position + point.margin * point.normal, towards};
+    const tracing::Ray shadow{point.position + point.margin * point.normal, towards};
     const double room = distance - std::min(2 * light.point.margin, 0.5 * distance);
     if (surfaces.occluded(shadow, room, sampler.bits())) return 0;
-    const double through = reference::meanOf(reference::transmittance(
-        media, shadow, distance, reference::TransmittanceMode::Ratio, sampler));
+    const double through = tracing::meanOf(tracing::transmittance(
+        media, shadow, distance, tracing::TransmittanceMode::Ratio, sampler));
     return intensity * cosine * through / std::max(distance * distance, least * least);
 }
 
@@ -55,7 +55,7 @@ uint32_t mortonCode(const dvec3& place) {
 
 /// Which lights to keep, each with the chance min(1, scale · worth): a light is where the sum of chances reaches a whole number, light by light along a
 /// curve through space, so that each region keeps as many as it should to within one.
-std::vector<bool> inTurn(const std::vector<const reference::WalkVertex*>& lights,
+std::vector<bool> inTurn(const std::vector<const tracing::WalkVertex*>& lights,
                          const std::vector<double>& worth, double scale, uint64_t seed) {
     Bounds around;
     for (const auto* light : lights) around.include(light->position);
@@ -65,7 +65,7 @@ std::vector<bool> inTurn(const std::vector<const reference::WalkVertex*>& lights
         order[i] = {mortonCode((lights[i]->position - around.minimum) * inverse), i};
     std::sort(order.begin(), order.end());
     std::vector<bool> keeps(lights.size());
-    double sum = double(reference::mixBits(seed * 0x9e3779b97f4a7c15ull) >> 11) * 0x1p-53;
+    double sum = double(tracing::mixBits(seed * 0x9e3779b97f4a7c15ull) >> 11) * 0x1p-53;
     for (const auto& [code, i] : order) {
         const double before = std::floor(sum);
         sum += std::min(1.0, scale * worth[i]);
@@ -77,25 +77,25 @@ std::vector<bool> inTurn(const std::vector<const reference::WalkVertex*>& lights
 } // namespace
 
 std::vector<SeenPoint> seenPoints(const gpu::ViewData& view,
-                                  const reference::SurfaceScene& surfaces,
-                                  const reference::MediaField& media, uint32_t count,
+                                  const tracing::SurfaceScene& surfaces,
+                                  const tracing::MediaField& media, uint32_t count,
                                   uint64_t seed) {
     std::vector<SeenPoint> seen;
-    reference::MediaSegment segment(media);
-    reference::MediumPoint there;
-    std::vector<reference::EmittedLight> emitted;
+    tracing::MediaSegment segment(media);
+    tracing::MediumPoint there;
+    std::vector<tracing::EmittedLight> emitted;
     for (uint32_t i = 0; i < count; ++i) {
-        reference::Sampler sampler(seed, 1, i);
+        tracing::Sampler sampler(seed, 1, i);
         const auto [ray, nearest] = eyeRay(view, 2.0 * sampler.next2() - 1.0);
-        const reference::RayHit hit = surfaces.intersect(
-            ray, nearest, reference::kInfinity, reference::RayKind::Camera, sampler.bits());
+        const tracing::RayHit hit = surfaces.intersect(
+            ray, nearest, tracing::kInfinity, tracing::RayKind::Camera, sampler.bits());
         segment.start(ray, hit.distance);
-        reference::PathWeights weights;
+        tracing::PathWeights weights;
         const auto flight = segment.fly(sampler, weights, there, emitted);
         if (flight.collided) {
             if (there.scattering != dvec3(0)) seen.push_back({ray.at(flight.distance)});
         } else if (hit.found()) {
-            const reference::SurfacePoint point = surfaces.pointAt(ray, hit);
+            const tracing::SurfacePoint point = surfaces.pointAt(ray, hit);
             if (!point.unlit)
                 seen.push_back({point.position, point.surface.geometricNormal, point.margin});
         }
@@ -104,11 +104,11 @@ std::vector<SeenPoint> seenPoints(const gpu::ViewData& view,
 }
 
 void chooseLights(Walks& walks, const std::vector<SeenPoint>& seen,
-                  const reference::SurfaceScene& surfaces, const reference::MediaField& media,
+                  const tracing::SurfaceScene& surfaces, const tracing::MediaField& media,
                   double wanted, double least, uint64_t seed) {
-    std::vector<const reference::WalkVertex*> lights;
+    std::vector<const tracing::WalkVertex*> lights;
     for (const auto& walk : walks.vertices)
-        for (const reference::WalkVertex& light : walk) lights.push_back(&light);
+        for (const tracing::WalkVertex& light : walk) lights.push_back(&light);
     if (lights.empty() || double(lights.size()) <= wanted) return;
     // Of what a point gets each light has a part: dark places matter as much as bright ones. A light is asked about every so many points alone.
     const size_t stride = std::max<size_t>(seen.size() / kPointsOfLight, 1);
@@ -116,7 +116,7 @@ void chooseLights(Walks& walks, const std::vector<SeenPoint>& seen,
     std::vector<std::vector<double>> parts(seen.size());
     tbb::parallel_for(size_t(0), seen.size(), [&](size_t p) {
         double sum = 0;
-        reference::Sampler sampler(seed, 2, uint32_t(p));
+        tracing::Sampler sampler(seed, 2, uint32_t(p));
         for (size_t i = p % stride; i < lights.size(); i += stride)
             sum += parts[p].emplace_back(
                 givenTo(seen[p], *lights[i], surfaces, media, least, sampler));
@@ -144,7 +144,7 @@ void chooseLights(Walks& walks, const std::vector<SeenPoint>& seen,
     size_t number = 0;
     for (auto& walk : walks.vertices) {
         auto out = walk.begin();
-        for (reference::WalkVertex& light : walk) {
+        for (tracing::WalkVertex& light : walk) {
             const double chance = std::min(1.0, high * worth[number]);
             if (!keeps[number++]) continue;
             light.power /= chance;

@@ -15,13 +15,13 @@ struct SeenPoint {
     double margin = 0; // metres by which rays start off the surface
 };
 std::vector<SeenPoint> seenPoints(const gpu::ViewData& view,
-                                  const reference::SurfaceScene& surfaces,
-                                  const reference::MediaField& media, uint32_t count,
+                                  const tracing::SurfaceScene& surfaces,
+                                  const tracing::MediaField& media, uint32_t count,
                                   uint64_t seed);
 
 /// Drops lights so that about `wanted` are left. Without points all are of one worth. `least`: metres; a light that is nearer counts as this far.
 void chooseLights(Walks& walks, const std::vector<SeenPoint>& seen,
-                  const reference::SurfaceScene& surfaces, const reference::MediaField& media,
+                  const tracing::SurfaceScene& surfaces, const tracing::MediaField& media,
                   double wanted, double least, uint64_t seed);
 
 /// Of the view, but for its jitter.

@@ -2,7 +2,7 @@
 // Virtual point lights on the GPU: their buffers, and what they do in the picture.
 
 #include "plugin/plugin_api.h"
-#include "reference/triangle_tree.h"
+#include "tracing/triangle_tree.h"
 #include "shared/vpl.h"
 #include "volumetric_gi/vpl/vpl_points.h"
 #include "volumetric_gi/vpl/vpl_walks.h"
@@ -12,7 +12,7 @@ namespace tyndall::volumetric_gi {
 struct VplBuffers {
     fg::BufferHandle lights, walks, maps, triangles, tree;
     fg::BufferHandle depths;                  // of grids; null: without
-    fg::BufferHandle nearSurfaces, nearMedia; // NearLight
+    fg::BufferHandle nearSurfaces, nearMedia; // CompensationLight
 };
 
 /// Declares that a pass reads them; the result is what bindVpls() takes.
@@ -36,7 +36,7 @@ struct VplUpload {
     const std::vector<uint32_t>* maps = nullptr; // as rays have made them
     const SurfacePoints* points = nullptr;       // not empty: they are to be splatted into maps
     const std::vector<gpu::VplTriangle>* triangles = nullptr;
-    const std::vector<reference::TreeNode>* tree = nullptr;
+    const std::vector<tracing::TreeNode>* tree = nullptr;
     const std::vector<vec4>*nearSurfaces = nullptr, *nearMedia = nullptr; // empty: without
     uint64_t lightsKey = 0, mapsKey = 0, trianglesKey = 0, nearKey = 0;
 };

@@ -28,7 +28,7 @@ double lowestCosine(uint32_t side) { return -8.0 / double(side); }
 
 } // namespace
 
-std::vector<uint32_t> makeVisibilityMaps(const reference::SurfaceScene& surfaces, const VplSet& set,
+std::vector<uint32_t> makeVisibilityMaps(const tracing::SurfaceScene& surfaces, const VplSet& set,
                                          uint32_t side, uint32_t jitter) {
     const size_t texels = size_t(side) * side;
     const size_t stride = texels + 1;
@@ -48,12 +48,12 @@ std::vector<uint32_t> makeVisibilityMaps(const reference::SurfaceScene& surfaces
             const bool onSurface = light.position.w < 0;
             const dvec3 normal(light.normal);
             const dvec3 origin = set.positions[i] + set.margins[i] * normal;
-            double nearest = reference::kInfinity;
+            double nearest = tracing::kInfinity;
             for (size_t k = 0; k < texels; ++k) {
                 if (onSurface && glm::dot(normal, directions[k]) < lowest) continue;
-                const reference::RayHit hit =
-                    surfaces.intersect({origin, directions[k]}, 0, reference::kInfinity,
-                                       reference::RayKind::Path, reference::mixBits(k));
+                const tracing::RayHit hit =
+                    surfaces.intersect({origin, directions[k]}, 0, tracing::kInfinity,
+                                       tracing::RayKind::Path, tracing::mixBits(k));
                 if (!hit.found()) continue;
                 maps[i * stride + k] =
                     surfaces.instances()[hit.instance].firstTriangle + hit.triangle;

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "core/low_discrepancy.h"
-#include "reference/sampler.h"
+#include "tracing/sampler.h"
 
 namespace tyndall::volumetric_gi {
 namespace {
@@ -72,8 +72,8 @@ void addPieces(std::vector<Piece>& pieces, const Around& around, const Piece& pi
 }
 
 /// `chance`, `u`, `v`: in [0,1).
-bool covered(const reference::SurfaceScene& surfaces, uint32_t triangle, const dvec3& at,
-             const reference::SceneTriangle& whole, double chance) {
+bool covered(const tracing::SurfaceScene& surfaces, uint32_t triangle, const dvec3& at,
+             const tracing::SceneTriangle& whole, double chance) {
     if (whole.opaque()) return true;
     const uint32_t instance = surfaces.instanceOf(triangle);
     const dvec3 a = whole.corners[1] - whole.corners[0], b = whole.corners[2] - whole.corners[0];
@@ -88,13 +88,13 @@ bool covered(const reference::SurfaceScene& surfaces, uint32_t triangle, const d
 
 } // namespace
 
-SurfacePoints makeSurfacePoints(const reference::SurfaceScene& surfaces,
+SurfacePoints makeSurfacePoints(const tracing::SurfaceScene& surfaces,
                                 std::span<const dvec3> lights, uint32_t setSize, uint32_t setCount,
                                 uint64_t seed) {
     SurfacePoints made;
     if (lights.empty() || surfaces.triangleCount() == 0) return made;
     const Around around = aroundLights(lights, 1e-3 * glm::length(surfaces.bounds().extent()));
-    const std::vector<reference::SceneTriangle> triangles = surfaces.triangles();
+    const std::vector<tracing::SceneTriangle> triangles = surfaces.triangles();
     std::vector<Piece> pieces;
     for (uint32_t i = 0; i < triangles.size(); ++i)
         addPieces(pieces, around, {triangles[i].corners, i}, kMostHalvings);
@@ -106,7 +106,7 @@ SurfacePoints makeSurfacePoints(const reference::SurfaceScene& surfaces,
     made.points.reserve(size_t(setSize) * setCount);
     for (uint32_t set = 0; set < setCount; ++set)
         for (uint32_t i = 0; i < setSize; ++i) {
-            const uint64_t sequence = reference::mixBits(seed * setCount + set);
+            const uint64_t sequence = tracing::mixBits(seed * setCount + set);
             const dvec2 place = lowDiscrepancyPoint(i, sequence);
             const double share = place.x * whole;
             const auto k =

@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "reference/surface_scene.h"
+#include "tracing/surface_scene.h"
 #include "shared/vpl.h"
 
 namespace tyndall::volumetric_gi {
@@ -16,7 +16,7 @@ struct SurfacePoints {
 
 /// `setCount` sets of `setSize` points, each set spread over all surfaces: by area over the squared distance from where the lights are, so that a landscape
 /// does not take the points that a room needs. Where rays may pass, points stand for what covers. No points where there is no surface.
-SurfacePoints makeSurfacePoints(const reference::SurfaceScene& surfaces,
+SurfacePoints makeSurfacePoints(const tracing::SurfaceScene& surfaces,
                                 std::span<const dvec3> lights, uint32_t setSize, uint32_t setCount,
                                 uint64_t seed);
 

@@ -140,7 +140,7 @@ void VplTechnique::makeLights(const plugin::FrameInputs& inputs) {
 /// Maps of what all lights see.
 void VplTechnique::makeMaps(uint32_t generation) {
     const Stopwatch watch(times_.maps);
-    const reference::SurfaceScene& surfaces = *scene_.scene().surfaces;
+    const tracing::SurfaceScene& surfaces = *scene_.scene().surfaces;
     maps_.clear();
     points_ = {};
     if (settings_.mapSide > 0 && settings_.maps == kVplMapsOfPoints)
@@ -187,11 +187,11 @@ void VplTechnique::renewSome(const WalkOrder& order, uint64_t lightsKey) {
 /// Of the lights of all candidates those that matter to the picture.
 void VplTechnique::choose(const plugin::FrameInputs& inputs, const WalkOrder& order,
                           uint32_t candidates) {
-    const reference::SurfaceScene& surfaces = *scene_.scene().surfaces;
+    const tracing::SurfaceScene& surfaces = *scene_.scene().surfaces;
     const uint64_t seed = fg::mixHash(order.seed, order.generation);
     std::vector<dvec3> lights;
     for (const auto& walk : walks_.vertices)
-        for (const reference::WalkVertex& light : walk) lights.push_back(light.position);
+        for (const tracing::WalkVertex& light : walk) lights.push_back(light.position);
     chooseLights(walks_, seenPoints(inputs.view.data, surfaces, scene_.media(), kSeenPoints, seed),
                  surfaces, scene_.media(), double(lights.size()) / candidates,
                  meanDistanceOf(lights, scene_.content(), 1.0 / candidates), seed);
@@ -212,7 +212,7 @@ void VplTechnique::makeNear(const plugin::FrameInputs& inputs) {
     near_ = {};
     if (params.nearLight == 0) return;
     const auto metres = [](float squared) { return std::sqrt(double(squared)); };
-    NearOrder order;
+    CompensationOrder order;
     order.surfaceFactor = gather_.surfaceFactor;
     order.mediaFactor = gather_.mediaFactor;
     order.paths = uint32_t(settings_.nearPaths);
@@ -220,18 +220,19 @@ void VplTechnique::makeNear(const plugin::FrameInputs& inputs) {
     order.onSurfaces = (inputs.terms & kIndirectOnSurfaces) != 0;
     order.inMedia = (inputs.terms & ~kIndirectOnSurfaces) != 0 && inputs.media.count > 0 &&
                     inputs.transmittance; // else none is in view
-    order.settings.terms = inputs.terms & ~kDirectTerms;
-    order.settings.elsewhere = {metres(params.surfaceClampSquared), metres(params.clampSquared),
-                                metres(params.mediumClampSquared), double(params.relaxed)};
-    order.settings.clampDistance = order.settings.elsewhere.betweenSurfaces;
-    order.settings.middle = dvec3(params.content);
+    order.clamps = {metres(params.surfaceClampSquared), metres(params.clampSquared),
+                    metres(params.mediumClampSquared), double(params.relaxed)};
+    tracing::VirtualLightPathSettings& path = order.path;
+    path.terms = inputs.terms & ~kDirectTerms;
+    path.clampDistance = order.clamps.betweenSurfaces;
+    path.middle = dvec3(params.content);
     if (params.content.w > 0) {
-        order.settings.radius = 1 / std::sqrt(double(params.content.w));
-        order.settings.clampDistance = kBoundOfPaths * order.settings.radius;
+        path.radius = 1 / std::sqrt(double(params.content.w));
+        path.clampDistance = kBoundOfPaths * path.radius;
     }
-    order.settings.leastRoughness = double(params.leastRoughness);
+    path.leastRoughness = double(params.leastRoughness);
     const Stopwatch watch(times_.near);
-    near_ = missedLight(inputs.view.data, scene_.scene(), scene_.emission(), order);
+    near_ = compensationLight(inputs.view.data, scene_.scene(), scene_.emission(), order);
 }
 
 VplGather VplTechnique::gather(const plugin::FrameInputs& inputs) const {
@@ -240,7 +241,7 @@ VplGather VplTechnique::gather(const plugin::FrameInputs& inputs) const {
     params.lightCount = uint32_t(set_.lights.size());
     params.walkCount = uint32_t(set_.walks.size()) - 1;
     Bounds grids;
-    for (const reference::MediumSource& medium : scene_.media().media())
+    for (const tracing::MediumSource& medium : scene_.media().media())
         if (medium.isGrid()) grids.include(medium.bounds());
     const double rounds =
         roundsOfLight(inputs.media, !grids.empty(), scene_) * double(params.lightCount);

@@ -8,7 +8,7 @@
 
 #include "volumetric_gi/vpl/traced_scene.h"
 #include "volumetric_gi/vpl/vpl_gather.h"
-#include "volumetric_gi/vpl/vpl_near.h"
+#include "volumetric_gi/vpl/compensation_light.h"
 #include "volumetric_gi/vpl/vpl_settings.h"
 #include "volumetric_gi/vpl/vpl_show.h"
 
@@ -49,7 +49,7 @@ private:
              nextTurn_ = 0;    // walks that are of an earlier scene; the next one to be renewed
     uint32_t walksTraced_ = 0; // in this frame
     uint64_t nearVersion_ = 0;
-    NearLight near_; // what the bound takes away and no step in media makes up for
+    CompensationLight near_; // what the bound takes away and no step in media makes up for
     struct {
         float walks = 0, choice = 0, maps = 0, near = 0;
     } times_; // of this frame, milliseconds

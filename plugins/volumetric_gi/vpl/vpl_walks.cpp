@@ -6,7 +6,7 @@
 namespace tyndall::volumetric_gi {
 namespace {
 
-gpu::VplData pack(const reference::WalkVertex& vertex, double share) {
+gpu::VplData pack(const tracing::WalkVertex& vertex, double share) {
     gpu::VplData light{};
     light.position = vec4(vec3(vertex.position), -1);
     light.travel = vec4(vec3(vertex.travel), 0);
@@ -16,7 +16,7 @@ gpu::VplData pack(const reference::WalkVertex& vertex, double share) {
         light.travel.w = float(vertex.medium->anisotropy);
         return light;
     }
-    const reference::Surface& surface = vertex.point.surface;
+    const tracing::Surface& surface = vertex.point.surface;
     light.normal = vec4(vec3(surface.geometricNormal), float(surface.roughness));
     light.shading = vec4(vec3(surface.normal), float(surface.specular));
     light.base = vec4(vec3(surface.baseColor), float(surface.metallic));
@@ -25,32 +25,32 @@ gpu::VplData pack(const reference::WalkVertex& vertex, double share) {
 
 } // namespace
 
-Walks traceWalks(const reference::TracerScene& scene, const reference::LightEmission& emission,
+Walks traceWalks(const tracing::TracerScene& scene, const tracing::LightEmission& emission,
                  const WalkOrder& order, uint32_t first, uint32_t count) {
     Walks walks;
     walks.starts.resize(count);
     walks.vertices.resize(count);
-    tbb::enumerable_thread_specific<reference::LightWalker> walkers(
-        [&] { return reference::LightWalker(scene, emission, {}); });
+    tbb::enumerable_thread_specific<tracing::LightWalker> walkers(
+        [&] { return tracing::LightWalker(scene, emission, {}); });
     tbb::parallel_for(tbb::blocked_range<uint32_t>(0, count, 16),
                       [&](const tbb::blocked_range<uint32_t>& range) {
-                          reference::LightWalker& walker = walkers.local();
+                          tracing::LightWalker& walker = walkers.local();
                           for (uint32_t i = range.begin(); i < range.end(); ++i) {
-                              reference::Sampler sampler(
+                              tracing::Sampler sampler(
                                   order.seed, 0, order.generation * order.walks + first + i);
                               walker.trace(sampler, walks.vertices[i]);
                               walks.starts[i] = walker.start();
                           }
                       });
-    for (const reference::LightWalker& walker : walkers) walks.cutOff += walker.cutOff();
+    for (const tracing::LightWalker& walker : walkers) walks.cutOff += walker.cutOff();
     return walks;
 }
 
-Walks reweighed(const Walks& walks, const reference::MediaField& from,
-                const reference::MediaField& to) {
+Walks reweighed(const Walks& walks, const tracing::MediaField& from,
+                const tracing::MediaField& to) {
     Walks result = walks;
     tbb::parallel_for(size_t(0), walks.vertices.size(), [&](size_t i) {
-        reference::reweigh(result.starts[i], result.vertices[i], from, to);
+        tracing::reweigh(result.starts[i], result.vertices[i], from, to);
     });
     return result;
 }
@@ -62,7 +62,7 @@ VplSet packWalks(const Walks& walks, const WalkOrder& order) {
     set.cutOff = walks.cutOff;
     const double share = 1 / double(order.walks);
     for (size_t i = 0; i < walks.vertices.size(); ++i) {
-        for (const reference::WalkVertex& vertex : walks.vertices[i]) {
+        for (const tracing::WalkVertex& vertex : walks.vertices[i]) {
             if (!(vertex.medium ? order.fromMedia : order.fromSurfaces)) continue;
             set.lights.push_back(pack(vertex, share));
             set.places.push_back({set.lights.back().position, set.lights.back().normal});

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "reference/guessed_media.h"
+#include "tracing/proxy_media.h"
 #include "shared/vpl.h"
 
 namespace tyndall::volumetric_gi {
@@ -28,17 +28,17 @@ struct WalkOrder {
 };
 
 struct Walks {
-    std::vector<reference::EmittedRay> starts;
-    std::vector<std::vector<reference::WalkVertex>> vertices;
+    std::vector<tracing::EmittedRay> starts;
+    std::vector<std::vector<tracing::WalkVertex>> vertices;
     uint64_t cutOff = 0;
 };
 
 /// The same order gives the same walks, however many threads there are. `count` of them from number `first` on.
-Walks traceWalks(const reference::TracerScene& scene, const reference::LightEmission& emission,
+Walks traceWalks(const tracing::TracerScene& scene, const tracing::LightEmission& emission,
                  const WalkOrder& order, uint32_t first, uint32_t count);
 /// What walks through one field carry in the other.
-Walks reweighed(const Walks& walks, const reference::MediaField& from,
-                const reference::MediaField& to);
+Walks reweighed(const Walks& walks, const tracing::MediaField& from,
+                const tracing::MediaField& to);
 /// Powers are divided by the number of walks.
 VplSet packWalks(const Walks& walks, const WalkOrder& order);
 /// Puts other lights in the place of those of some walks, from number `first` on; order.together is 1.

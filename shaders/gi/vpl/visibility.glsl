@@ -15,7 +15,7 @@ const float kVplSeam = 1e-4;     // barycentric: neighbours overlap, so that not
 const uint kHides = 1u;
 const uint kDoubtful = 2u; // the points are on different sides of the triangle's plane, but it does not lie between them; or rays pass parts of it
 
-/// Of a triangle with holes: is there something where these barycentric coordinates are? Pieces as reference::pieceNumber() has them.
+/// Of a triangle with holes: is there something where these barycentric coordinates are? Pieces as tracing::pieceNumber() has them.
 bool covers(VplTriangle triangle, float second, float third) {
     vec2 at = clamp(vec2(second, third), 0.0, 1.0) * 8.0;
     ivec2 cell = min(ivec2(at), 7);

@@ -11,8 +11,8 @@
 namespace tyndall::validation {
 namespace {
 
-using reference::PathCounts;
-using reference::Sampler;
+using tracing::PathCounts;
+using tracing::Sampler;
 using reference::VolumePathTracer;
 
 constexpr uint64_t kPilotSamples = 64; // a batch
@@ -90,7 +90,7 @@ double slopeOf(const Probe& probe, double mean, double step) {
 }
 
 uint64_t samplesFor(const Probe& probe, const Effort& effort, uint64_t seed) {
-    Run pilot(probe, reference::mixBits(seed ^ 0x70696c6f74ull));
+    Run pilot(probe, tracing::mixBits(seed ^ 0x70696c6f74ull));
     pilot.batches(kPilotSamples);
     const double n = double(kPilotSamples * kBatches), mean = pilot.total().sum / n;
     const double deviation = std::sqrt(std::max(0.0, pilot.total().squares / n - mean * mean));
@@ -115,7 +115,7 @@ uint64_t samplesFor(const Probe& probe, const Effort& effort, uint64_t seed) {
 std::shared_ptr<const Stage> Stage::make(Scene scene) {
     auto stage = std::make_shared<Stage>();
     stage->scene = std::move(scene);
-    auto traced = reference::TracerScene::build(stage->scene, dvec3(0), 1);
+    auto traced = tracing::TracerScene::build(stage->scene, dvec3(0), 1);
     if (!traced.ok()) throw std::runtime_error(traced.message());
     stage->traced = std::move(*traced);
     return stage;

@@ -18,7 +18,7 @@ inline constexpr double kLargestT = 3.5;
 /// A scene made ready, with all that must outlive it.
 struct Stage {
     Scene scene;
-    reference::TracerScene traced;
+    tracing::TracerScene traced;
     /// Throws std::runtime_error where the scene cannot be built.
     static std::shared_ptr<const Stage> make(Scene scene);
 };
@@ -27,7 +27,7 @@ struct Stage {
 struct Probe {
     std::shared_ptr<const Stage> stage;
     std::vector<reference::PathSettings> settings{{}}; // of the tracers handed to `sample`
-    std::function<double(std::vector<reference::VolumePathTracer>&, reference::Sampler&)> sample;
+    std::function<double(std::vector<reference::VolumePathTracer>&, tracing::Sampler&)> sample;
     std::function<double(double)> value; // of the mean; empty: the mean itself
     double bias = 0;              // of `value`, relative: what the recipe itself may be off by
     double effort = 1;            // how many times the effort of others it deserves
@@ -44,7 +44,7 @@ struct Estimate {
     double value = 0;
     double error = 0; // standard error, kBatches - 1 degrees of freedom
     uint64_t samples = 0;
-    reference::PathCounts counts;
+    tracing::PathCounts counts;
 };
 
 /// The number of samples follows from a pilot with random numbers of its own, and from no clock: the same seed gives the same

@@ -10,15 +10,15 @@
 namespace tyndall::validation {
 namespace {
 
-using reference::CameraRays;
-using reference::Sampler;
-using reference::TermLight;
+using tracing::CameraRays;
+using tracing::Sampler;
+using tracing::TermLight;
 using reference::VolumePathTracer;
 using Tracers = std::vector<VolumePathTracer>;
 
 dvec3 anyDirection(Sampler& sampler) {
     const dvec2 u = sampler.next2();
-    return reference::directionAround(1 - 2 * u.x, u.y);
+    return tracing::directionAround(1 - 2 * u.x, u.y);
 }
 
 double seen(Tracers& tracers, const dvec3& from, const dvec3& direction, Sampler& sampler) {
@@ -98,7 +98,7 @@ Recipe fluenceRecipe(double albedo, double r) {
     probe.sample = [r](Tracers& tracers, Sampler& sampler) {
         const dvec2 u = sampler.next2();
         const double angle = kPi * u.x;
-        const dvec3 around = reference::directionAround(std::cos(angle), u.y);
+        const dvec3 around = tracing::directionAround(std::cos(angle), u.y);
         const double radiance =
             seen(tracers, {r, 0, 0}, glm::normalize(dvec3(-around.z, around.x, around.y)), sampler);
         return radiance * 0.5 * kPi * std::sin(angle);

@@ -10,17 +10,17 @@
 namespace tyndall::validation {
 namespace {
 
-using reference::MediaField;
-using reference::MediumSource;
-using reference::Ray;
-using reference::Sampler;
+using tracing::MediaField;
+using tracing::MediumSource;
+using tracing::Ray;
+using tracing::Sampler;
 
 double transmittanceOf(const Medium& medium, const Ray& ray, double length) {
     SceneMaker maker;
     maker.addMedium(medium);
     const MediaField field(maker.scene(), dvec3(0));
     Sampler unused(0, 0, 0);
-    return reference::transmittance(field, ray, length, reference::TransmittanceMode::Exact, unused)
+    return tracing::transmittance(field, ray, length, tracing::TransmittanceMode::Exact, unused)
         .y;
 }
 
@@ -83,8 +83,8 @@ double worstCell() {
         const auto at = [&](double t) { return medium.density->sample(ray.at(t) + 9.5); };
         const double simpson = length / 6 * (at(0) + 4 * at(0.5 * length) + at(length));
         const double depth =
-            -std::log(reference::transmittance(field, ray, length,
-                                               reference::TransmittanceMode::Exact, sampler)
+            -std::log(tracing::transmittance(field, ray, length,
+                                               tracing::TransmittanceMode::Exact, sampler)
                           .y);
         worst = std::max(worst, std::abs(depth - simpson) / std::max(simpson, 1e-3));
     }

@@ -9,9 +9,9 @@
 namespace tyndall::validation {
 namespace {
 
-using reference::CameraRays;
-using reference::Sampler;
-using reference::TermLight;
+using tracing::CameraRays;
+using tracing::Sampler;
+using tracing::TermLight;
 using reference::VolumePathTracer;
 using Tracers = std::vector<VolumePathTracer>;
 
@@ -80,8 +80,8 @@ Computed directTransmittance(double albedo, double anisotropy, double tau,
     const auto stage = Stage::make(litFrom(albedo, anisotropy, tau, Side::Transmitted));
     const auto through = [&](double mu) {
         Sampler unused(0, 0, 0);
-        return reference::transmittance(*stage->traced.media, {dvec3(0), downwards(mu)},
-                                        reference::kInfinity, reference::TransmittanceMode::Exact,
+        return tracing::transmittance(*stage->traced.media, {dvec3(0), downwards(mu)},
+                                        tracing::kInfinity, tracing::TransmittanceMode::Exact,
                                         unused)
             .y;
     };

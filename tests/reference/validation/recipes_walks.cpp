@@ -8,11 +8,11 @@
 namespace tyndall::validation {
 namespace {
 
-using reference::MediaSegment;
-using reference::MediumPoint;
-using reference::PathWeights;
-using reference::Ray;
-using reference::Sampler;
+using tracing::MediaSegment;
+using tracing::MediumPoint;
+using tracing::PathWeights;
+using tracing::Ray;
+using tracing::Sampler;
 using Tracers = std::vector<reference::VolumePathTracer>;
 
 /// A walker in a stage's media.
@@ -23,7 +23,7 @@ public:
 
     /// Flies as far as `length`: did it collide before? It then stands at the collision, not yet turned.
     bool fly(double length) {
-        std::vector<reference::EmittedLight> emitted;
+        std::vector<tracing::EmittedLight> emitted;
         segment_.start(ray_, length);
         const MediaSegment::Flight flight = segment_.fly(sampler_, weights_, point_, emitted);
         travelled_ += flight.distance;
@@ -64,7 +64,7 @@ Recipe meanSquareRecipe(const Row& row) {
         Walk walk(*stage, {}, sampler);
         for (int i = 0; i < collisions; ++i) {
             if (i > 0) walk.turn();
-            walk.fly(reference::kInfinity);
+            walk.fly(tracing::kInfinity);
         }
         return glm::dot(walk.ray().origin, walk.ray().origin);
     };
@@ -82,7 +82,7 @@ Recipe fluenceMomentRecipe(const Row& row) {
         Walk walk(*stage, {}, sampler);
         double sum = 0;
         for (double carried = 1; carried > kNothing; carried = walk.carried()) {
-            walk.fly(reference::kInfinity);
+            walk.fly(tracing::kInfinity);
             sum += carried * glm::dot(walk.ray().origin, walk.ray().origin);
             walk.turn();
         }
@@ -106,7 +106,7 @@ Recipe farFluenceRecipe(const Row& row) {
         Walk walk(*stage, {}, sampler);
         double sum = 0;
         for (double carried = 1; carried > kNothing;) {
-            walk.fly(reference::kInfinity);
+            walk.fly(tracing::kInfinity);
             walk.turn();
             carried = walk.carried(); // less what this collision absorbs
             const double x = glm::length(walk.ray().origin);
@@ -125,7 +125,7 @@ Recipe farFluenceRecipe(const Row& row) {
 
 /// Where a ray from within leaves the cube [-½,½]³.
 double exitOf(const Ray& ray) {
-    double exit = reference::kInfinity;
+    double exit = tracing::kInfinity;
     for (int axis = 0; axis < 3; ++axis) {
         const double d = ray.direction[axis], face = d > 0 ? 0.5 : -0.5;
         if (d != 0) exit = std::min(exit, (face - ray.origin[axis]) / d);
@@ -146,7 +146,7 @@ Ray intoCube(Sampler& sampler) {
     dvec3 normal(0);
     normal[axis] = side;
     ray.direction = glm::normalize(
-        reference::Frame(normal).toWorld(reference::directionAround(std::sqrt(1 - u.x), u.y)));
+        tracing::Frame(normal).toWorld(tracing::directionAround(std::sqrt(1 - u.x), u.y)));
     return ray;
 }
 

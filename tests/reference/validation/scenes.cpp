@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "reference/sampler.h"
+#include "tracing/sampler.h"
 #include "scene/primitives.h"
 
 namespace tyndall::validation {
@@ -109,7 +109,7 @@ void addSlab(SceneMaker& maker, double albedo, double anisotropy, double tau) {
 }
 
 dmat4 lookAlong(const dvec3& direction, const dvec3& at) {
-    const reference::Frame frame(-glm::normalize(direction));
+    const tracing::Frame frame(-glm::normalize(direction));
     return {dvec4(frame.x, 0), dvec4(frame.y, 0), dvec4(frame.z, 0), dvec4(at, 1)};
 }
 
@@ -118,7 +118,7 @@ std::shared_ptr<const BrickGrid> lumpyGrid(double extent, double densest, uint64
     const double spacing = extent / (kVoxels - 1);
     std::vector<float> voxels;
     for (uint64_t i = 0; i < uint64_t(kVoxels * kVoxels * kVoxels); ++i) {
-        const double u = double(reference::mixBits(seed * 1000003 + i) >> 11) * 0x1p-53;
+        const double u = double(tracing::mixBits(seed * 1000003 + i) >> 11) * 0x1p-53;
         // Much thin matter, some of it empty, and little that is dense.
         voxels.push_back(float(densest * (u < 0.2 ? 0 : u * u * u)));
     }

@@ -1,7 +1,7 @@
 #pragma once
 // Scenes in which quantities are measured, made in code: bodies of matter, black walls, lights from given directions.
 
-#include "reference/ray.h"
+#include "tracing/ray.h"
 #include "scene/scene.h"
 
 namespace tyndall::validation {

@@ -18,7 +18,7 @@ constexpr double kRepeatFactor = 4;
 double tOf(const Row& row, const Estimate& estimate) {
     const double margin = row.published ? 0 : row.margin, apart = estimate.value - row.expected;
     const double error = std::hypot(estimate.error, margin);
-    return error > 0 ? apart / error : (apart == 0 ? 0 : reference::kInfinity);
+    return error > 0 ? apart / error : (apart == 0 ? 0 : tracing::kInfinity);
 }
 
 bool passes(const Row& row, const Estimate& estimate) {
@@ -49,13 +49,13 @@ void judgeProbe(const Probe& probe, const SuiteOptions& options, Outcome& outcom
     effort.segments =
         options.segmentsPerRow * probe.effort * (row.published ? options.publishedEffort : 1);
     // Of one seed for all rows every deviation would lie on the same side.
-    outcome.seed = reference::mixBits(options.seed * 1000003 + uint64_t(row.line));
+    outcome.seed = tracing::mixBits(options.seed * 1000003 + uint64_t(row.line));
     Estimate estimate = measured(effort, outcome.seed);
     outcome.t = tOf(row, estimate);
     if (!passes(row, estimate)) {
         effort.targetError /= std::sqrt(kRepeatFactor);
         effort.segments *= kRepeatFactor;
-        estimate = measured(effort, reference::mixBits(outcome.seed));
+        estimate = measured(effort, tracing::mixBits(outcome.seed));
         outcome.repeated = true;
         outcome.again = tOf(row, estimate);
     }
@@ -64,7 +64,7 @@ void judgeProbe(const Probe& probe, const SuiteOptions& options, Outcome& outcom
     outcome.samples = estimate.samples;
     outcome.verdict = passes(row, estimate) ? Verdict::Pass : Verdict::Fail;
     // Paths cut off, or light that is no number, would be a mistake even where the mean looks right.
-    const reference::PathCounts& counts = outcome.counts;
+    const tracing::PathCounts& counts = outcome.counts;
     if (counts.cutOff + counts.nonFinite + counts.negative > 0) outcome.verdict = Verdict::Fail;
     if (!(estimate.error <= kCoarsest * std::abs(row.expected)) && row.expected != 0)
         outcome.verdict = Verdict::Unresolved;

@@ -22,7 +22,7 @@ struct Outcome {
     double again = 0; // of the second one, where there was need for one; else 0
     bool repeated = false;
     uint64_t samples = 0, seed = 0;
-    reference::PathCounts counts;
+    tracing::PathCounts counts;
     double seconds = 0;
     /// Standard error over expected value.
     [[nodiscard]] double relativeError() const;

@@ -1,0 +1,178 @@
+#include "tracing/light_emission.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace tyndall::tracing {
+namespace {
+
+dvec3 uniformDirection(const dvec2& u) { return directionAround(1 - 2 * u.x, u.y); }
+
+/// Of light from infinity, so much goes to the content, where that is smaller than all there is; the rest to boxes around it, each so many times as wide.
+constexpr double kToContent = 0.7;
+constexpr double kWider = 4;
+constexpr size_t kMostBoxes = 16;
+
+/// Of those the last is around everything: rays per area fall off with the squared distance from the content, as what light gives there does.
+std::vector<Bounds> boxesAround(const Bounds& content, const Bounds& whole) {
+    if (whole.empty()) return {};
+    std::vector<Bounds> boxes;
+    const double least = 1e-6 * glm::length(whole.extent());
+    dvec3 half = glm::max(0.5 * content.extent(), dvec3(least));
+    const dvec3 centre = glm::clamp(content.centre(), whole.minimum, whole.maximum);
+    for (Bounds box = content; !(box.contains(whole.minimum) && box.contains(whole.maximum)) &&
+                               boxes.size() < kMostBoxes;) {
+        boxes.push_back(box);
+        half *= kWider;
+        box = {glm::max(centre - half, whole.minimum), glm::min(centre + half, whole.maximum)};
+    }
+    boxes.push_back(whole);
+    return boxes;
+}
+
+/// Of the faces of a box that `direction` goes in by, those across x, y and z: their areas as the direction sees them, m².
+dvec3 shadowOfFaces(const Bounds& box, const dvec3& direction) {
+    if (box.empty()) return dvec3(0);
+    const dvec3 e = box.extent();
+    return glm::abs(direction) * dvec3(e.y * e.z, e.z * e.x, e.x * e.y);
+}
+
+double sumOf(const dvec3& v) { return v.x + v.y + v.z; }
+
+/// The mean over all directions of the shadow of a box: a quarter of its surface (Cauchy).
+double meanShadow(const Bounds& box) { return 0.5 * sumOf(shadowOfFaces(box, dvec3(1))); }
+
+/// Evenly on the shadow that a box casts along a direction: a point of a face that the direction goes in by.
+dvec3 pointOnShadow(const Bounds& box, const dvec3& direction, const dvec2& u) {
+    const dvec3 shadow = shadowOfFaces(box, direction);
+    double target = u.x * sumOf(shadow);
+    int face = 0;
+    while (face < 2 && !(target < shadow[face])) target -= shadow[face++];
+    while (face > 0 && !(shadow[face] > 0)) --face; // never one that is seen from its edge
+    const int one = (face + 1) % 3, other = (face + 2) % 3;
+    const double part = shadow[face] > 0 ? std::min(target / shadow[face], 1.0) : 0.5;
+    dvec3 point = box.minimum;
+    point[face] = direction[face] > 0 ? box.minimum[face] : box.maximum[face];
+    point[one] += part * box.extent()[one];
+    point[other] += u.y * box.extent()[other];
+    return point;
+}
+
+/// Does the line through a point meet the box?
+bool onShadow(const Bounds& box, const dvec3& point, const dvec3& direction) {
+    if (box.empty()) return false;
+    double enter = -kInfinity, leave = kInfinity;
+    for (int axis = 0; axis < 3; ++axis) {
+        double low = box.minimum[axis] - point[axis], high = box.maximum[axis] - point[axis];
+        if (direction[axis] == 0) {
+            if (low > 0 || high < 0) return false;
+            continue;
+        }
+        low /= direction[axis];
+        high /= direction[axis];
+        enter = std::max(enter, std::min(low, high));
+        leave = std::min(leave, std::max(low, high));
+    }
+    return enter <= leave;
+}
+
+} // namespace
+
+LightEmission::LightEmission(const TracerScene& scene, const Bounds& content) : scene_(scene) {
+    whole_ = scene.surfaces->bounds();
+    bool endless = false;
+    for (const MediumSource& medium : scene.media->media()) {
+        whole_.include(medium.bounds());
+        endless |= medium.endless();
+    }
+    content_ = content.empty() ? whole_ : content;
+    if (endless && !whole_.empty()) {
+        const dvec3 half(0.5 * glm::length(whole_.extent()));
+        whole_ = {whole_.centre() - half, whole_.centre() + half};
+    }
+    boxes_ = boxesAround(content_, whole_);
+    const Lights& lights = *scene.lights;
+    const auto add = [this](double power) { sums_.push_back(sums_.back() + std::max(0.0, power)); };
+    for (const LightSource& lamp : lights.lamps()) add(lamp.power(meanShadow(content_)));
+    add(lights.emittedPower());
+    add(lights.environment().black()
+            ? 0
+            : 4 * kPi * lights.environment().meanLuminance() * meanShadow(content_));
+    add(lights.glow().black() ? 0 : 4 * kPi * lights.glow().intensity());
+}
+
+/// From outside of the ball around everything.
+Ray LightEmission::fromInfinity(const dvec3& direction, double choice, const dvec2& u,
+                                double& area) const {
+    area = 0;
+    if (whole_.empty()) return {dvec3(0), direction};
+    // Boxes that a direction sees from their edges have no shadow; all of them, where there is more than one.
+    const auto shadowOf = [&](size_t box) { return sumOf(shadowOfFaces(boxes_[box], direction)); };
+    const size_t last = boxes_.size() - 1;
+    const double toContent = last > 0 && shadowOf(0) > 0 ? kToContent : 0.0,
+                 toOther = last > 0 ? (1 - toContent) / double(last) : 1.0;
+    size_t aim = last;
+    if (choice < toContent) {
+        aim = 0;
+    } else if (last > 0) {
+        aim = 1 + std::min(size_t((choice - toContent) / toOther), last - 1);
+    }
+    dvec3 position = pointOnShadow(boxes_[aim], direction, u);
+    double density = 0;
+    for (size_t box = 0; box <= last; ++box) {
+        const double part = box == 0 && last > 0 ? toContent : toOther, shadow = shadowOf(box);
+        // A point of a box's face is on that box's shadow, however it was rounded.
+        if (part > 0 && shadow > 0 && (box == aim || onShadow(boxes_[box], position, direction)))
+            density += part / shadow;
+    }
+    area = density > 0 ? 1 / density : 0;
+    const double radius = 0.5 * glm::length(whole_.extent());
+    position -= (glm::dot(position - whole_.centre(), direction) + radius) * direction;
+    return {position, direction};
+}
+
+EmittedRay LightEmission::sample(Sampler& sampler) const {
+    EmittedRay out;
+    if (black()) return out;
+    const dvec2 choice = sampler.next2(), where = sampler.next2(), way = sampler.next2();
+    const double target = choice.x * sums_.back();
+    size_t light = size_t(std::upper_bound(sums_.begin(), sums_.end(), target) - sums_.begin());
+    light = std::clamp<size_t>(light, 1, sums_.size() - 1) - 1;
+    while (light > 0 && !(sums_[light + 1] > sums_[light])) --light; // never one without power
+    const double chance = (sums_[light + 1] - sums_[light]) / sums_.back();
+
+    const Lights& lights = *scene_.lights;
+    double area = 0;
+    if (light < lights.lamps().size()) {
+        const LightSource& lamp = lights.lamps()[light];
+        if (lamp.local()) {
+            out = lamp.emit(where, way);
+        } else {
+            const LightSample sun = lamp.sample(whole_.empty() ? dvec3(0) : whole_.centre(), way);
+            out.ray = fromInfinity(-sun.direction, choice.y, where, area);
+            if (sun.density > 0) out.power = sun.radiance * (area / sun.density);
+            out.distant = true;
+        }
+    } else if (light == lights.trianglesIndex()) {
+        out = lights.emitFromTriangle(choice.y, where, way);
+    } else if (light == lights.environmentIndex()) {
+        const DirectionSample sky = lights.environment().sample(way);
+        out.ray = fromInfinity(-sky.direction, choice.y, where, area);
+        if (sky.density > 0) out.power = sky.radiance * (area / sky.density);
+        out.distant = true;
+    } else {
+        const GlowSample glow = lights.glow().sample(choice.y, where);
+        out.ray = {glow.position, uniformDirection(way)};
+        if (glow.density > 0) out.power = glow.emission * (4 * kPi / glow.density);
+    }
+    out.power /= chance;
+    if (out.distant && out.power != dvec3(0)) {
+        const Ray back{out.ray.origin, -out.ray.direction};
+        out.power *=
+            transmittance(*scene_.media, back, kInfinity, TransmittanceMode::Exact, sampler);
+    }
+    return out;
+}
+
+} // namespace tyndall::tracing

@@ -1,0 +1,35 @@
+#pragma once
+// Light as it leaves its sources: rays drawn in proportion to power, from which walks through the scene start.
+
+#include <vector>
+
+#include "tracing/tracer_scene.h"
+
+namespace tyndall::tracing {
+
+/// All lights of a scene as sources of rays. Light from infinity goes through the box around all surfaces and all media with an end. Where there is endless
+/// fog that box is as large as the ball around it, whatever the direction; what the fog outside of it scatters is left out, but not what it takes away.
+class LightEmission {
+public:
+    /// `scene` must outlive it. `content`: where most of light from infinity is to be aimed; empty: everywhere alike.
+    explicit LightEmission(const TracerScene& scene, const Bounds& content = {});
+
+    [[nodiscard]] bool black() const { return !(sums_.back() > 0); }
+    /// Watts of all lights, the mean of the channels; bounds where textures, cones or windows dim them.
+    [[nodiscard]] double power() const { return sums_.back(); }
+    [[nodiscard]] EmittedRay sample(Sampler& sampler) const;
+    /// What most rays are to meet; around all surfaces and media with an end, where nothing less was given.
+    [[nodiscard]] const Bounds& content() const { return content_; }
+
+private:
+    /// `area`: 1/density of the ray among those of this direction, m².
+    [[nodiscard]] Ray fromInfinity(const dvec3& direction, double choice, const dvec2& u,
+                                   double& area) const;
+
+    const TracerScene& scene_;
+    Bounds whole_, content_;    // around everything, and around what most rays are to meet
+    std::vector<Bounds> boxes_; // from the content out to all: what light from infinity is aimed at
+    std::vector<double> sums_{0.0}; // cumulative power, as Lights counts them
+};
+
+} // namespace tyndall::tracing

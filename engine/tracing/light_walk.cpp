@@ -1,0 +1,155 @@
+#include "tracing/light_walk.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tyndall::tracing {
+namespace {
+
+/// Light that grazes a facet under a tilted shading normal would weigh without bound.
+constexpr double kLeastCosine = 1e-3;
+/// Of what is scattered outside of the ball around the content, so much is aimed at it.
+constexpr double kOnToContent = 0.5;
+
+/// What a shading normal makes of light that falls in along `travel`: its cosine over that of the facet (Veach 1997, 5.3).
+double tilt(const Surface& surface, const dvec3& direction) {
+    const double facet = std::abs(glm::dot(surface.geometricNormal, direction)),
+                 shading = std::abs(glm::dot(surface.normal, direction));
+    return shading / std::max(facet, kLeastCosine);
+}
+
+} // namespace
+
+dvec3 WalkVertex::intensity(const dvec3& direction) const {
+    if (medium) {
+        const dvec3 apart = direction - travel;
+        return power * medium->phaseValue(0.5 * glm::dot(apart, apart));
+    }
+    const double facet = glm::dot(point.surface.geometricNormal, direction);
+    if (!(facet > 0)) return dvec3(0);
+    const dvec3 reflected = Bsdf(point.surface, -travel).evaluate(direction);
+    const double shading = std::abs(glm::dot(point.surface.normal, direction));
+    return power * reflected * (facet / std::max(shading, kLeastCosine));
+}
+
+LightWalker::Aim LightWalker::aimFrom(const dvec3& position) const {
+    const dvec3 way = centre_ - position;
+    const double distance = glm::length(way);
+    if (!(radius_ > 0) || !(distance > radius_) || !std::isfinite(distance)) return {};
+    const double sine = radius_ / distance;
+    return {way / distance, sine * sine / (1 + std::sqrt(1 - sine * sine))};
+}
+
+dvec3 LightWalker::Aim::sample(const dvec2& u) const {
+    const double v = u.x * versine, sine = std::sqrt(v * (2 - v)), azimuth = 2 * kPi * u.y;
+    return glm::normalize(
+        Frame(axis).toWorld({sine * std::cos(azimuth), sine * std::sin(azimuth), 1 - v}));
+}
+
+double LightWalker::Aim::density(const dvec3& direction, double own) const {
+    const dvec3 apart = direction - axis;
+    const bool within = 0.5 * glm::dot(apart, apart) <= versine;
+    return (1 - kOnToContent) * own + (within ? kOnToContent / (2 * kPi * versine) : 0.0);
+}
+
+bool LightWalker::survives(double carried, double started, size_t vertices, Sampler& sampler,
+                           PathWeights& weights) const {
+    if (!(carried > 0)) return false;
+    if (vertices < 2) return true;
+    const double chance =
+        std::clamp(carried / started, settings_.leastSurvival, settings_.mostSurvival);
+    if (!(sampler.random() < chance)) return false;
+    weights.throughput /= chance;
+    return true;
+}
+
+void LightWalker::trace(Sampler& sampler, std::vector<WalkVertex>& walk) {
+    walk.clear();
+    start_ = emission_.sample(sampler);
+    double started = maximumOf(start_.power);
+    if (!(started > 0) || !std::isfinite(started)) return;
+    PathWeights weights;
+    weights.throughput = start_.power;
+    if (!scene_.media->grey()) weights.hero = std::min(2, int(3 * sampler.next1()));
+    Ray ray = start_.ray;
+    for (;;) {
+        ++rays_;
+        const RayHit hit =
+            scene_.surfaces->intersect(ray, 0, kInfinity, RayKind::Path, sampler.bits());
+        MediaSegment::Flight flight{false, hit.distance};
+        if (!scene_.media->empty()) {
+            segment_.start(ray, hit.distance);
+            flight = segment_.fly(sampler, weights, mediumPoint_, emitted_);
+        }
+        if (!flight.collided && !hit.found()) return;
+        WalkVertex vertex;
+        vertex.travel = ray.direction;
+        vertex.scatterings = int(walk.size()) + 1;
+        if (walk.empty()) weights.throughput *= rangeWindow(start_.range, flight.distance);
+        if (weights.throughput == dvec3(0)) return;
+        const double choice = sampler.next1();
+        const dvec2 u = sampler.next2();
+        if (flight.collided) {
+            dvec3 share;
+            vertex.medium = &mediumPoint_.pick(weights.hero, choice, share);
+            vertex.position = ray.at(flight.distance);
+            weights.throughput *= share;
+            weights.ratio *= share; // every hero would have drawn it by its own scattering
+            vertex.power = weights.carried();
+            walk.push_back(vertex);
+            const Aim aim = aimFrom(vertex.position);
+            dvec3 direction;
+            if (aim.versine > 0 && sampler.random() < kOnToContent) {
+                direction = aim.sample(u);
+            } else {
+                const double cosine = std::clamp(vertex.medium->samplePhase(u.x), -1.0, 1.0);
+                direction =
+                    glm::normalize(Frame(ray.direction).toWorld(directionAround(cosine, u.y)));
+            }
+            if (aim.versine > 0) {
+                const dvec3 apart = direction - ray.direction;
+                const double phase = vertex.medium->phaseValue(0.5 * glm::dot(apart, apart)),
+                             weight = phase / aim.density(direction, phase);
+                weights.throughput *= weight;
+                started *= weight;
+            }
+            ray = {vertex.position, direction};
+        } else {
+            vertex.point = scene_.surfaces->pointAt(ray, hit);
+            if (vertex.point.unlit) return;
+            vertex.position = vertex.point.position;
+            weights.throughput *= tilt(vertex.point.surface, ray.direction);
+            vertex.power = weights.carried();
+            walk.push_back(vertex);
+            const Bsdf bsdf(vertex.point.surface, -ray.direction);
+            const Aim aim = aimFrom(vertex.position);
+            BsdfSample sample;
+            if (aim.versine > 0 && sampler.random() < kOnToContent) {
+                sample.direction = aim.sample(u);
+                sample.weight = bsdf.evaluate(sample.direction);
+                sample.density = bsdf.density(sample.direction);
+                sample.weight /= sample.density > 0 ? sample.density : 1.0;
+            } else {
+                sample = bsdf.sample(choice, u);
+            }
+            if (sample.weight == dvec3(0)) return;
+            if (aim.versine > 0) {
+                const double weight =
+                    sample.density / aim.density(sample.direction, sample.density);
+                sample.weight *= weight;
+                started *= weight;
+            }
+            weights.throughput *=
+                sample.weight /
+                std::max(tilt(vertex.point.surface, sample.direction), kLeastCosine);
+            ray = rayFrom(vertex.point, sample.direction);
+        }
+        if (!survives(maximumOf(weights.carried()), started, walk.size(), sampler, weights)) return;
+        if (int(walk.size()) >= settings_.longest) {
+            ++cutOff_;
+            return;
+        }
+    }
+}
+
+} // namespace tyndall::tracing

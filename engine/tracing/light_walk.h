@@ -1,0 +1,72 @@
+#pragma once
+// Random walks from the lights, whose vertices are virtual point lights (Keller 1997; in media Engelhardt, Novák and Dachsbacher 2010,
+// section 4.1): light arrives at a vertex and is scattered on from there.
+
+#include <vector>
+
+#include "tracing/light_emission.h"
+
+namespace tyndall::tracing {
+
+/// Where light of a walk is scattered.
+struct WalkVertex {
+    dvec3 position{0};
+    dvec3 travel{0}; // unit, of the light that arrives
+    dvec3 power{0};  // watts: on a surface what arrives, in a medium what is scattered
+    const MediumSource* medium = nullptr; // whose phase function scatters; null: a surface
+    SurfacePoint point;                   // of a surface
+    int scatterings = 1;                  // of the light, with the one here
+
+    /// Watts per steradian that leave towards `direction` (unit), without cosines at the receiver. On a surface with the cosine here.
+    [[nodiscard]] dvec3 intensity(const dvec3& direction) const;
+};
+
+struct WalkSettings {
+    int longest = 10000; // vertices; walks that reach it are counted
+    // From the third vertex on a walk goes on with the chance of what it carries over what it started with, within these.
+    double leastSurvival = 0.05, mostSurvival = 0.95;
+};
+
+/// Makes walks, one for each sampler. Keeps scratch memory: one for each thread. Outside of the ball around what the emission aims at, half of them are
+/// scattered on towards it: without that the rare walk that finds its way back from a landscape carries the power of square miles.
+class LightWalker {
+public:
+    LightWalker(const TracerScene& scene, const LightEmission& emission,
+                const WalkSettings& settings)
+        : scene_(scene), emission_(emission), settings_(settings),
+          centre_(emission.content().centre()),
+          radius_(emission.content().empty() ? 0 : 0.5 * glm::length(emission.content().extent())),
+          segment_(*scene.media) {}
+
+    /// The vertices of one walk, in order; what stood in `walk` is dropped.
+    void trace(Sampler& sampler, std::vector<WalkVertex>& walk);
+    /// Of the walk traced last.
+    [[nodiscard]] const EmittedRay& start() const { return start_; }
+    [[nodiscard]] uint64_t cutOff() const { return cutOff_; }
+    [[nodiscard]] uint64_t rays() const { return rays_; }
+
+private:
+    /// Directions from a point to the ball around the content: a cone.
+    struct Aim {
+        dvec3 axis{0, 0, 1}; // unit
+        double versine = 0;  // 1 - cosine of half its angle; 0: none, the point is in the ball
+        [[nodiscard]] dvec3 sample(const dvec2& u) const;
+        /// Of directions that are drawn by `own` or, with a chance of kOnToContent, from the cone: per steradian.
+        [[nodiscard]] double density(const dvec3& direction, double own) const;
+    };
+    [[nodiscard]] Aim aimFrom(const dvec3& position) const;
+    bool survives(double carried, double started, size_t vertices, Sampler& sampler,
+                  PathWeights& weights) const;
+    const TracerScene& scene_;
+    const LightEmission& emission_;
+    WalkSettings settings_;
+    dvec3 centre_; // of the ball around the content
+    double radius_;
+    EmittedRay start_;
+    MediaSegment segment_;
+    MediumPoint mediumPoint_;
+    std::vector<EmittedLight> emitted_;
+    uint64_t cutOff_ = 0, rays_ = 0;
+};
+
+} // namespace tyndall::tracing

@@ -1,0 +1,34 @@
+#pragma once
+// What clamping takes away and the GPU does not compensate: followed by paths on the processor (Kollig and Keller 2004), for squares of pixels.
+
+#include "volumetric_gi/vpl/bias_compensation.h"
+#include "shared/view.h"
+
+namespace tyndall::volumetric_gi {
+
+/// As cameraRay() in shaders/common/view.glsl; `ndc`: -1 to 1.
+tracing::CameraRays::CameraRay eyeRay(const gpu::ViewData& view, const dvec2& ndc);
+
+struct CompensationOrder {
+    // Pixels along an edge of a square; which of them stands for it says marchedPixel() in shaders/media/nearest_rays.glsl.
+    int surfaceFactor = 1, mediaFactor = 1;
+    uint32_t paths = 1; // of each square
+    uint32_t first = 0; // number of its first path: others bring other light
+    bool onSurfaces = true, inMedia = true;
+    tracing::VirtualLightPathSettings path;
+    GpuClamps clamps;
+};
+
+/// By square, the lowest row first; w: 0. Empty where none was asked for.
+struct CompensationLight {
+    std::vector<vec4>
+        onSurfaces; // nits that leave surfaces towards the eye over reflectance() in shaders/gi/vpl/receiver.glsl
+    std::vector<vec4> inMedia; // nits that media scatter to the eye
+    uint64_t nonFinite = 0;    // lights that were left out because they were no numbers
+};
+
+/// The mean over paths is what gathering with `order.clamps` misses.
+CompensationLight compensationLight(const gpu::ViewData& view, const tracing::TracerScene& scene,
+                      const tracing::LightEmission& emission, const CompensationOrder& order);
+
+} // namespace tyndall::volumetric_gi
