@@ -50,20 +50,25 @@ void drawClaim(Session& session, const FramePlan& plan, Term term) {
     tooltip(meaning(term));
     ImGui::TableNextColumn();
     ImGui::AlignTextToFramePadding();
-    const int owner = plan.owner[size_t(term)];
     const auto techniques = session.renderer().techniques();
+    const auto nameOf = [&](const TermShare& share) {
+        const std::string name =
+            share.owner == kDirectPasses ? "the engine" : techniques[size_t(share.owner)].name;
+        return share.media == kAllMedia ? name : name + " in " + mediaNames(share.media);
+    };
+    std::string names;
+    for (const TermShare& share : plan.sharesOf(term))
+        names += (names.empty() ? "" : ", ") + nameOf(share);
     if (!(plan.wanted & one))
         coloredText(kGrey, "not asked for");
     else if (!(plan.possible & one))
         coloredText(kGrey, "dark in this scene");
-    else if (plan.missing & one)
+    else if (names.empty())
         coloredText(kBad, "missing: nobody computes it");
-    else if (owner == kDirectPasses)
-        text("the engine");
-    else if (owner >= 0 && size_t(owner) < techniques.size())
-        coloredText(kGood, techniques[size_t(owner)].name);
+    else if (plan.missing & one)
+        coloredText(kBad, names + "; missing in " + mediaNames(plan.missingIn(term)));
     else
-        coloredText(kBad, "nobody");
+        coloredText(kGood, names);
     tooltip(meaning(term));
 }
 

@@ -1,14 +1,18 @@
 #pragma once
-// All that a plugin includes. One pure-virtual interface with plain data across it: no GL names, no ImGui, no exceptions
-// and no standard containers cross the boundary. A plugin is linked statically (from a list that CMake makes) or loaded as
+// All that a plugin includes. Pure-virtual interfaces with plain data across them: no GL names, no ImGui, no exceptions
+// and no standard containers cross the boundary, but for what is said where it stands: `const Scene*`, and the frame graph, whose inline
+// functions a plugin compiles. The handshake covers all of it: PluginDescriptor has the sizes of what crosses, and a hash of the text of every header
+// that crosses. A plugin is linked statically (from a list that CMake makes) or loaded as
 // a shared library by its C entry point; both use this header unchanged.
 
 #include <cstdint>
 
 #include "core/settings.h"
 #include "framegraph/frame_graph.h"
+#include "plugin/abi_hash.h"
 #include "plugin/frame_resources.h"
 #include "shared/march.h"
+#include "transport/media_kinds.h"
 #include "transport/terms.h"
 
 namespace tyndall {
@@ -17,24 +21,32 @@ struct Scene;
 
 namespace tyndall::plugin {
 
-/// Raised by one whenever anything that crosses the boundary changes its meaning or layout.
-inline constexpr uint32_t kAbiVersion = 4;
+/// Raised by one whenever anything that crosses the boundary changes its meaning.
+inline constexpr uint32_t kAbiVersion = 5;
 
-/// One technique that a plugin offers: the name that `--gi` takes, and the terms that it computes.
+/// What a technique says of itself: the name that `--gi` takes, what it computes, and what `auto` judges it by.
 struct TechniqueInfo {
-    const char* name;   // "octaves"
-    const char* title;  // "Octaves of multiple scattering"
-    const char* help;   // one sentence
-    TermSet claims;     // what it can compute; the frame's plan gives it all or some
-    uint32_t automatic; // 1: `auto` may choose it; 0: only who asks for it gets it
+    const char* name;  // "octaves"
+    const char* title; // "Octaves of multiple scattering"
+    const char* help;  // one sentence
+    TermSet claims;    // what it can compute, on surfaces (kIndirectOnSurfaces) and in media (the rest)
+    /// The sets of terms that the frame's plan may give it. One that mixes the light of several terms computes them together or not at all:
+    /// a part would be counted as what it is not. Null: any part of its claims.
+    const TermSet* sets;
+    uint32_t setCount;
+    MediaSet media;         // kinds of media in which it computes its terms in media: kAllMedia, or some
+    uint32_t separatesMedia; // 1: it leaves out the kinds that are not in FrameInputs::kinds
+    uint32_t automatic;      // 1: `auto` may choose it; 0: only who asks for it gets it
+    // Typical figures at medium quality, one frame, measured on software GL (docs/benchmarks.md).
+    float cost;            // time of a frame over that of one with direct light alone
+    float errorOnSurfaces; // relmse of its terms on surfaces, of those in media
+    float errorInMedia;
 };
 
 struct PluginInfo {
     const char* name;    // "volumetric_gi"
     const char* version; // "0.1.0"
     const char* help;
-    const TechniqueInfo* techniques;
-    uint32_t techniqueCount;
 };
 
 /// The host's side: what a plugin may ask for, valid from setup() to destruction.
@@ -48,8 +60,8 @@ protected:
     ~Host() = default;
 };
 
-/// What changed since the last frame, as version numbers (core/version.h).
-struct SceneChange {
+/// The scene of this frame: version numbers of its parts (core/version.h), and how far it reaches.
+struct SceneState {
     uint64_t geometry, materials, lights, media, environment;
     uint32_t lightCount, mediumCount;
     // Of surfaces and of media with an end, render space; minimum > maximum: nothing.
@@ -104,14 +116,16 @@ struct FrameInputs {
     fg::TextureHandle
         transmittance; // view-sized, of the media on the way to each pixel's surface; null: there are none
     gpu::MarchParams march; // how rays through media are upsampled: media.march.*
-    SceneChange scene;
+    SceneState scene;
     const gpu::LightData*
         lightData; // `lights.lightCount` of them, as on the GPU; until the frame is recorded
     SurfaceDrawer* surfaces;
-    const Scene*
-        whole; // as it is on the processor, for who traces rays there; until the frame is recorded
+    /// As it is on the processor, for who traces rays there; until the frame is recorded. Not plain data: scene/scene.h is one of the headers that
+    /// the handshake's hash covers.
+    const Scene* whole;
     double origin[3]; // the world's point that is render space's origin
-    TermSet terms;    // that the plan gives to this plugin
+    TermSet terms;    // that the plan gives to this technique: one of its sets
+    MediaSet kinds;   // of media in which it computes its terms in media
     bool statistics;  // somebody asks for FrameOutputs::statistics
     float whiteNits;  // luminance that the picture's exposure makes white, before the tone curve
 };
@@ -122,35 +136,59 @@ struct Statistic {
     uint32_t element; // of FrameOutputs::statistics
 };
 
-/// Null handles: not produced. All view-sized.
+/// Images by receiver. Null handles: not produced. All view-sized.
 struct FrameOutputs {
     fg::TextureHandle
-        inScatter; // RGBA32F nits reaching the eye from media, for the granted terms in media
+        onSurfaces; // RGBA32F nits leaving surfaces towards the eye (before media), for the granted terms on surfaces
     fg::TextureHandle
-        surfaceRadiance; // RGBA32F nits leaving surfaces towards the eye (before media), for the granted terms on surfaces
+        inMedia; // RGBA32F nits reaching the eye from media, for the granted terms in media
     fg::BufferHandle statistics;          // floats; only where inputs.statistics is set
     const Statistic* statistic = nullptr; // what they are, until the next addPasses()
     uint32_t statisticCount = 0;
 };
 
+/// A table of settings, and where their values are. Keys start with the technique's or the plugin's name.
+struct SettingsTable {
+    const SettingDesc* fields = nullptr;
+    uint32_t count = 0;
+    void* values = nullptr; // lives as long as the plugin
+    const PresetEntry* presets = nullptr;
+    uint32_t presetCount = 0;
+};
+
+/// One way to compute terms of light transport. Belongs to its plugin.
+class Technique {
+public:
+    virtual const TechniqueInfo& info() const = 0;
+    virtual SettingsTable settings() { return {}; }
+    /// Adds this frame's passes, for `inputs.terms`. Called in frames in which the plan gives it terms.
+    virtual FrameOutputs addPasses(fg::FrameGraph& graph, const FrameInputs& inputs) = 0;
+    /// Shows what it works with in the finished linear picture (`color`, view-sized RGBA32F nits), where its settings ask for it; returns
+    /// the new picture, or `color`. Called after addPasses() in the same frames.
+    virtual fg::TextureHandle addDebugView(fg::FrameGraph&, const FrameInputs&,
+                                           fg::TextureHandle color) {
+        return color;
+    }
+
+protected:
+    ~Technique() = default;
+};
+
 class Plugin {
 public:
     virtual const PluginInfo& info() const = 0;
-    /// The plugin's settings; the values live as long as the plugin. The table's keys start with the technique's name.
-    virtual uint32_t settingsGroupCount() const = 0;
-    virtual void settingsGroup(uint32_t index, const SettingDesc** fields, uint32_t* count,
-                               void** values) = 0;
-    virtual void presets(const PresetEntry** entries, uint32_t* count) const = 0;
+    /// Settings that are no technique's own.
+    virtual SettingsTable settings() { return {}; }
     /// Once, before the first frame. Returns false and writes a sentence into `message` if it cannot run here:
     /// the renderer then goes on without it.
     virtual bool setup(Host& host, char* message, uint32_t messageBytes) = 0;
-    virtual void sceneChanged(const SceneChange& change) = 0;
-    /// Adds this frame's passes for `technique` (an index into info().techniques).
-    virtual FrameOutputs addPasses(fg::FrameGraph& graph, uint32_t technique,
-                                   const FrameInputs& inputs) = 0;
+    virtual uint32_t techniqueCount() const { return 0; }
+    virtual Technique* technique(uint32_t) { return nullptr; }
     /// Adds passes that change the finished linear picture (`color`, view-sized RGBA32F nits); returns the new one, or `color`.
-    virtual fg::TextureHandle addPostPasses(fg::FrameGraph& graph, const FrameInputs& inputs,
-                                            fg::TextureHandle color) = 0;
+    virtual fg::TextureHandle addPostPasses(fg::FrameGraph&, const FrameInputs&,
+                                            fg::TextureHandle color) {
+        return color;
+    }
     /// Frees the plugin with the allocator that made it.
     virtual void destroy() = 0;
 
@@ -158,12 +196,23 @@ protected:
     ~Plugin() = default;
 };
 
+/// Sizes of what crosses the boundary by value or by address. A compiler or a flag that lays something out in another way shows here.
+struct AbiSizes {
+    uint32_t settingDesc = sizeof(SettingDesc), techniqueInfo = sizeof(TechniqueInfo),
+             frameInputs = sizeof(FrameInputs), frameOutputs = sizeof(FrameOutputs),
+             surfaceTriangles = sizeof(SurfaceTriangles), lightData = sizeof(gpu::LightData),
+             frameGraph = sizeof(fg::FrameGraph), settingsTable = sizeof(SettingsTable);
+    bool operator==(const AbiSizes&) const = default;
+};
+
 /// Returned by the entry point. The first two fields never change place.
 struct PluginDescriptor {
-    uint32_t structSize; // sizeof(PluginDescriptor)
-    uint32_t abiVersion; // kAbiVersion
-    const char* name;
-    Plugin* (*create)();
+    uint32_t structSize = sizeof(PluginDescriptor);
+    uint32_t abiVersion = kAbiVersion;
+    const char* name = nullptr;
+    Plugin* (*create)() = nullptr;
+    uint64_t headers = kHeadersHash; // of the text of every header that crosses
+    AbiSizes sizes{};
 };
 
 /// The symbol that a shared library exports with C linkage: `const PluginDescriptor* tyndall_plugin()`.
@@ -174,20 +223,16 @@ inline constexpr const char* kEntryPointName = "tyndall_plugin";
 
 /// Defines the entry point. As part of a program the symbol carries the plugin's name, so that several can be linked.
 #ifdef TYNDALL_PLUGIN_SHARED
-#define TYNDALL_PLUGIN(NAME, CREATE)                                                               \
-    extern "C" __attribute__((visibility("default"))) const ::tyndall::plugin::PluginDescriptor*   \
-    tyndall_plugin() {                                                                             \
-        static constexpr ::tyndall::plugin::PluginDescriptor descriptor{                           \
-            sizeof(::tyndall::plugin::PluginDescriptor), ::tyndall::plugin::kAbiVersion, #NAME,    \
-            CREATE};                                                                               \
-        return &descriptor;                                                                        \
-    }
+#define TYNDALL_PLUGIN_ENTRY(NAME) tyndall_plugin
+#define TYNDALL_PLUGIN_EXPORT __attribute__((visibility("default")))
 #else
+#define TYNDALL_PLUGIN_ENTRY(NAME) tyndall_plugin_##NAME
+#define TYNDALL_PLUGIN_EXPORT
+#endif
 #define TYNDALL_PLUGIN(NAME, CREATE)                                                               \
-    extern "C" const ::tyndall::plugin::PluginDescriptor* tyndall_plugin_##NAME() {                \
-        static constexpr ::tyndall::plugin::PluginDescriptor descriptor{                           \
-            sizeof(::tyndall::plugin::PluginDescriptor), ::tyndall::plugin::kAbiVersion, #NAME,    \
-            CREATE};                                                                               \
+    extern "C" TYNDALL_PLUGIN_EXPORT const ::tyndall::plugin::PluginDescriptor*                    \
+    TYNDALL_PLUGIN_ENTRY(NAME)() {                                                                 \
+        static const ::tyndall::plugin::PluginDescriptor descriptor{                               \
+            .name = #NAME, .create = CREATE};                                                      \
         return &descriptor;                                                                        \
     }
-#endif

@@ -19,6 +19,10 @@ Result<void> checkDescriptor(const PluginDescriptor* descriptor, const std::stri
                      std::to_string(descriptor->structSize) + " bytes where " +
                      std::to_string(sizeof(PluginDescriptor)) +
                      " are expected: build it again with this program's headers"};
+    if (descriptor->headers != kHeadersHash || !(descriptor->sizes == AbiSizes{}))
+        return Error{"plugin '" + origin +
+                     "' was built with other headers than this program, or so that they are laid out in another way: " 
+                     "build it again with this program's headers"};
     if (!descriptor->name || !descriptor->create)
         return Error{"plugin '" + origin +
                      "' has an incomplete description: it lacks a name or a constructor"};
@@ -77,6 +81,25 @@ Result<void> PluginRegistry::load(const std::filesystem::path& file) {
     return adopted;
 }
 
+void PluginRegistry::addSettings(const SettingsTable& table, SettingsRegistry& settings) {
+    if (table.count > 0) settings.add({{table.fields, table.count}, table.values});
+    if (table.presetCount > 0) settings.addPreset({table.presets, table.presetCount});
+}
+
+void PluginRegistry::addTechniques(Plugin& plugin, SettingsRegistry& settings) {
+    for (uint32_t i = 0; i < plugin.techniqueCount(); ++i) {
+        Technique& technique = *plugin.technique(i);
+        addSettings(technique.settings(), settings);
+        const TechniqueInfo& info = technique.info();
+        techniques_.push_back({{info.name, info.title, info.help, plugin.info().name, info.claims,
+                                info.automatic != 0,
+                                std::vector<TermSet>(info.sets, info.sets + info.setCount),
+                                info.media, info.separatesMedia != 0, info.cost,
+                                info.errorOnSurfaces, info.errorInMedia},
+                               &technique});
+    }
+}
+
 std::vector<std::string> PluginRegistry::setup(Host& host, SettingsRegistry& settings) {
     std::vector<std::string> failures;
     for (size_t i = 0; i < plugins_.size();) {
@@ -90,25 +113,8 @@ std::vector<std::string> PluginRegistry::setup(Host& host, SettingsRegistry& set
             plugins_.erase(plugins_.begin() + std::ptrdiff_t(i));
             continue;
         }
-        for (uint32_t group = 0; group < loaded.instance->settingsGroupCount(); ++group) {
-            const SettingDesc* fields = nullptr;
-            uint32_t count = 0;
-            void* values = nullptr;
-            loaded.instance->settingsGroup(group, &fields, &count, &values);
-            settings.add({{fields, count}, values});
-        }
-        const PresetEntry* entries = nullptr;
-        uint32_t entryCount = 0;
-        loaded.instance->presets(&entries, &entryCount);
-        settings.addPreset({entries, entryCount});
-        const PluginInfo& info = loaded.instance->info();
-        for (uint32_t t = 0; t < info.techniqueCount; ++t) {
-            const TechniqueInfo& technique = info.techniques[t];
-            techniques_.push_back({{technique.name, technique.title, technique.help, info.name,
-                                    technique.claims, technique.automatic != 0},
-                                   i,
-                                   t});
-        }
+        addSettings(loaded.instance->settings(), settings);
+        addTechniques(*loaded.instance, settings);
         ++i;
     }
     return failures;

@@ -17,9 +17,8 @@ namespace tyndall::plugin {
 
 /// A technique as the registry found it, and who computes it.
 struct RegisteredTechnique {
-    Technique technique;
-    size_t plugin;  // index into PluginRegistry::plugins()
-    uint32_t index; // in the plugin's own list
+    tyndall::Technique description;
+    Technique* technique;
 };
 
 class PluginRegistry {
@@ -32,7 +31,7 @@ public:
     /// Adds built-in plugins. CHECKs that their descriptors fit: they were compiled with this program.
     void addBuiltins(std::span<const EntryPoint> entryPoints);
     /// Loads a shared library; a plugin of the same name that is there already is replaced.
-    /// Errors: no such file, no entry point, another ABI version or structure size, an incomplete description.
+    /// Errors: no such file, no entry point, another ABI version, other headers or sizes, an incomplete description.
     Result<void> load(const std::filesystem::path& file);
 
     /// Sets every plugin up with `host` and registers its settings. One that fails is dropped; the sentences are returned.
@@ -51,6 +50,8 @@ private:
         std::string origin; // "built in" or the file
     };
     static void unload(Loaded& loaded);
+    static void addSettings(const SettingsTable& table, SettingsRegistry& settings);
+    void addTechniques(Plugin& plugin, SettingsRegistry& settings);
     Result<void> adopt(const PluginDescriptor* descriptor, void* library,
                        const std::string& origin);
 

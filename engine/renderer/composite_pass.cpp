@@ -1,5 +1,7 @@
 #include "renderer/composite_pass.h"
 
+#include <array>
+
 #include "core/check.h"
 #include "shared/post.h"
 
@@ -57,37 +59,54 @@ fg::TextureHandle addCompositePass(fg::FrameGraph& graph, const char* passName,
     return throughMedia ? pass.seen : radiance;
 }
 
+namespace {
+
+/// Of up to so many images at once: texture units are few.
+constexpr uint32_t kSummedAtOnce = 8;
+
+struct SumData {
+    std::array<fg::TextureHandle, kSummedAtOnce> images;
+    uint32_t count = 0;
+    fg::TextureHandle sum;
+};
+
+void executeSum(const SumData& data, fg::PassContext& context) {
+    if (data.count == 0) {
+        static constexpr float kBlack[4] = {0, 0, 0, 1};
+        return context.clearTexture(data.sum, kBlack);
+    }
+    static constexpr const char* kNames[kSummedAtOnce] = {"image0", "image1", "image2", "image3",
+                                                          "image4", "image5", "image6", "image7"};
+    auto command = context.compute("post/sum.comp", {{"COUNT", int32_t(data.count)}});
+    for (uint32_t i = 0; i < data.count; ++i) command.bind(kNames[i], data.images[i]);
+    command.bind("sum", data.sum).dispatchOver(data.sum);
+}
+
+} // namespace
+
 fg::TextureHandle addSumPass(fg::FrameGraph& graph, const TermImages& images, int width,
                              int height) {
-    struct Data {
-        TermImages images;
-        fg::TextureHandle sum;
-    };
-    return graph
-        .addPass<Data>(
-            "sum",
-            [&](fg::Builder& builder, Data& data) {
-                data.images = images;
-                for (uint32_t i = 0; i < images.count; ++i)
-                    data.images.images[i].image = builder.read(images.images[i].image);
-                data.sum = builder.create(
-                    "beauty", fg::texture2D(fg::Format::RGBA32F, width, height),
-                    images.count > 0 ? fg::Access::StorageWrite : fg::Access::TransferWrite);
-            },
-            [](const Data& data, fg::PassContext& context) {
-                if (data.images.count == 0) {
-                    static constexpr float kBlack[4] = {0, 0, 0, 1};
-                    return context.clearTexture(data.sum, kBlack);
-                }
-                static constexpr const char* kNames[kMaxTermImages] = {
-                    "image0", "image1", "image2", "image3", "image4", "image5", "image6", "image7"};
-                auto command =
-                    context.compute("post/sum.comp", {{"COUNT", int32_t(data.images.count)}});
-                for (uint32_t i = 0; i < data.images.count; ++i)
-                    command.bind(kNames[i], data.images.images[i].image);
-                command.bind("sum", data.sum).dispatchOver(data.sum);
-            })
-        .sum;
+    fg::TextureHandle sum;
+    uint32_t next = 0;
+    do {
+        sum = graph
+                  .addPass<SumData>(
+                      "sum",
+                      [&](fg::Builder& builder, SumData& data) {
+                          if (sum) data.images[data.count++] = builder.read(sum);
+                          while (next < images.count && data.count < kSummedAtOnce)
+                              data.images[data.count++] = builder.read(images.images[next++].image);
+                          data.sum = builder.create(
+                              "beauty", fg::texture2D(fg::Format::RGBA32F, width, height),
+                              data.count > 0 ? fg::Access::StorageWrite
+                                             : fg::Access::TransferWrite);
+                      },
+                      [](const SumData& data, fg::PassContext& context) {
+                          executeSum(data, context);
+                      })
+                  .sum;
+    } while (next < images.count);
+    return sum;
 }
 
 fg::TextureHandle addAccumulatePass(fg::FrameGraph& graph, const char* historyName,

@@ -1,5 +1,8 @@
 #include "renderer/frame.h"
 
+#include <array>
+#include <string>
+
 #include "renderer/optical_depth_pass.h"
 
 namespace tyndall {
@@ -52,49 +55,70 @@ TermImages addDirectTerms(fg::FrameGraph& graph, const SurfaceLight& surfaces,
     return images;
 }
 
+void keepStatistics(const plugin::FrameOutputs& outputs, FrameImages& frame) {
+    if (!outputs.statistics) return;
+    StatisticsBuffer statistics{outputs.statistics, {}};
+    for (uint32_t k = 0; k < outputs.statisticCount; ++k)
+        statistics.elements.emplace_back(outputs.statistic[k].name, outputs.statistic[k].element);
+    frame.statistics.push_back(std::move(statistics));
+}
+
+/// What the plan gives a technique; no terms where it is not needed.
+plugin::FrameInputs inputsFor(const FrameOrder& order, int technique, plugin::FrameInputs inputs) {
+    inputs.terms = order.plan->termsOf(technique);
+    inputs.kinds = order.plan->mediaOf(technique);
+    return inputs;
+}
+
 /// Each technique computes the terms that the plan gives it.
 void addTechniques(fg::FrameGraph& graph, const FrameParts& parts, const FrameOrder& order,
-                   plugin::FrameInputs& inputs, FrameImages& frame) {
-    const fg::TextureHandle transmittance = frame.transmittance;
-    TermImages& images = frame.terms;
+                   const plugin::FrameInputs& all, FrameImages& frame) {
     const auto techniques = parts.plugins.techniques();
     for (size_t i = 0; i < techniques.size(); ++i) {
-        inputs.terms = order.plan->termsOf(int(i));
+        const plugin::FrameInputs inputs = inputsFor(order, int(i), all);
         if (inputs.terms == 0) continue;
-        const plugin::FrameOutputs outputs = parts.plugins.plugin(techniques[i].plugin)
-                                                 .addPasses(graph, techniques[i].index, inputs);
-        if (holds(graph, outputs.surfaceRadiance))
-            images.add(inputs.terms & kIndirectOnSurfaces,
-                       addCompositePass(graph, "composite.indirect", "term.indirectOnSurfaces",
-                                        outputs.surfaceRadiance, transmittance));
-        if (holds(graph, outputs.inScatter))
-            images.add(inputs.terms & ~kIndirectOnSurfaces, outputs.inScatter);
-        if (!outputs.statistics) continue;
-        StatisticsBuffer statistics{outputs.statistics, {}};
-        for (uint32_t k = 0; k < outputs.statisticCount; ++k)
-            statistics.elements.emplace_back(outputs.statistic[k].name,
-                                             outputs.statistic[k].element);
-        frame.statistics.push_back(std::move(statistics));
+        const plugin::FrameOutputs outputs = techniques[i].technique->addPasses(graph, inputs);
+        if (holds(graph, outputs.onSurfaces))
+            frame.terms.add(inputs.terms & kIndirectOnSurfaces,
+                            addCompositePass(graph, "composite.indirect", "term.indirectOnSurfaces",
+                                             outputs.onSurfaces, frame.transmittance));
+        if (holds(graph, outputs.inMedia))
+            frame.terms.add(inputs.terms & ~kIndirectOnSurfaces, outputs.inMedia);
+        keepStatistics(outputs, frame);
     }
 }
 
+/// Techniques show what they work with; plugins change the finished picture.
 fg::TextureHandle addPostEffects(fg::FrameGraph& graph, const FrameParts& parts,
-                                 const plugin::FrameInputs& inputs, fg::TextureHandle color) {
+                                 const FrameOrder& order, const plugin::FrameInputs& inputs,
+                                 fg::TextureHandle color) {
+    const auto techniques = parts.plugins.techniques();
+    for (size_t i = 0; i < techniques.size(); ++i) {
+        const plugin::FrameInputs own = inputsFor(order, int(i), inputs);
+        if (own.terms != 0) color = techniques[i].technique->addDebugView(graph, own, color);
+    }
     for (size_t i = 0; i < parts.plugins.count(); ++i)
         color = parts.plugins.plugin(i).addPostPasses(graph, inputs, color);
     return color;
 }
 
+/// "average.term0" and so on: as long as the program lives.
+const char* averageName(uint32_t image) {
+    static const auto kNames = [] {
+        std::array<std::string, kMaxTermImages> names;
+        for (size_t i = 0; i < names.size(); ++i) names[i] = "average.term" + std::to_string(i);
+        return names;
+    }();
+    return kNames[image].c_str();
+}
+
 /// Means over the frames so far of the sum and, where they are wanted, of each term.
 void addAverages(fg::FrameGraph& graph, const FrameOrder& order, FrameImages& images) {
-    static constexpr const char* kHistories[kMaxTermImages] = {
-        "average.term0", "average.term1", "average.term2", "average.term3",
-        "average.term4", "average.term5", "average.term6", "average.term7"};
     images.beauty = addAccumulatePass(graph, "average.beauty", images.beauty, order.averagedFrame);
     if (!order.separateTerms) return;
     for (uint32_t i = 0; i < images.terms.count; ++i)
         images.terms.images[i].image = addAccumulatePass(
-            graph, kHistories[i], images.terms.images[i].image, order.averagedFrame);
+            graph, averageName(i), images.terms.images[i].image, order.averagedFrame);
 }
 
 } // namespace
@@ -118,17 +142,18 @@ FrameImages recordFrame(fg::FrameGraph& graph, const FrameParts& parts, const Fr
     images.terms = addDirectTerms(graph, surfaces, march);
 
     // Indirect light, as far as techniques compute it.
-    plugin::FrameInputs inputs{order.view,
+    const plugin::FrameInputs inputs{order.view,
                                images.gbuffer,
                                lights,
                                media.resources,
                                march.transmittance,
                                marchParams(*media.settings),
-                               order.sceneChange,
+                               order.sceneState,
                                parts.lights.lights().data(),
                                &parts.drawer,
                                order.scene,
                                {order.renderOrigin.x, order.renderOrigin.y, order.renderOrigin.z},
+                               0,
                                0,
                                order.statistics,
                                displayWhite(order.ev100, parts.postSettings)};
@@ -143,7 +168,7 @@ FrameImages recordFrame(fg::FrameGraph& graph, const FrameParts& parts, const Fr
     if (order.averagedFrame > 0) addAverages(graph, order, images);
 
     // A picture for people.
-    images.beauty = addPostEffects(graph, parts, inputs, images.beauty);
+    images.beauty = addPostEffects(graph, parts, order, inputs, images.beauty);
     const Display display =
         addTonemapPass(graph, images.beauty, order.ev100, parts.postSettings, order.view.data.seed);
     images.display = display.image;

@@ -33,7 +33,7 @@ struct FrameParts {
 struct FrameOrder {
     ViewResources view;
     const FramePlan* plan = nullptr;
-    plugin::SceneChange sceneChange{};
+    plugin::SceneState sceneState{};
     const Scene* scene = nullptr;
     dvec3 renderOrigin{0}; // world
     float ev100 = 0;

@@ -13,6 +13,18 @@ namespace {
 
 constexpr int kLargestPicture = 16384; // pixels along an edge: what every GL 4.5 driver takes
 
+MediaSet kindOf(MediumKind kind) {
+    switch (kind) {
+    case MediumKind::Everywhere:
+    case MediumKind::Box:
+    case MediumKind::Sphere: return kShapeMedia;
+    case MediumKind::Height: return kHeightMedia;
+    case MediumKind::Grid: return kGridMedia;
+    case MediumKind::Particles: return kParticleMedia;
+    }
+    return 0;
+}
+
 SceneTraits traitsOf(const Scene& scene, const GpuScene& surfaces, const LightSystem& lights,
                      bool mediaEnabled) {
     SceneTraits traits;
@@ -22,7 +34,9 @@ SceneTraits traitsOf(const Scene& scene, const GpuScene& surfaces, const LightSy
     for (const Material& material : scene.materials)
         traits.lights |= maximumOf(material.emissive) > 0;
     if (!mediaEnabled) return traits;
+    traits.kinds = 0;
     for (const Medium& medium : scene.media) {
+        if (maximumOf(medium.scattering) > 0) traits.kinds |= kindOf(medium.kind);
         traits.media |= maximumOf(medium.extinction()) > 0 || maximumOf(medium.emission) > 0;
         traits.scatteringMedia |= maximumOf(medium.scattering) > 0;
         traits.lights |=
@@ -115,7 +129,7 @@ Result<std::unique_ptr<Renderer>> Renderer::create(gl::Context& context,
     for (const std::string& failure : impl->plugins.setup(impl->host, impl->settings))
         log::warning(failure);
     for (const plugin::RegisteredTechnique& technique : impl->plugins.techniques())
-        impl->techniques.push_back(technique.technique);
+        impl->techniques.push_back(technique.description);
     return std::unique_ptr<Renderer>(new Renderer(std::move(impl)));
 }
 
@@ -166,7 +180,7 @@ Result<FrameResult> Renderer::renderFrame(const FrameRequest& request) {
     r.order.averagedFrame =
         request.converge ? r.average.next(r.averageKey(request), request.restart) : 0;
     const SceneVersions& v = r.scene->versions;
-    r.order.sceneChange = {r.surfaces.version(),
+    r.order.sceneState = {r.surfaces.version(),
                            v.materials,
                            v.lights,
                            r.media.version(),
@@ -180,12 +194,10 @@ Result<FrameResult> Renderer::renderFrame(const FrameRequest& request) {
     const auto toRender = [&](const dvec3& p, float(&out)[4]) {
         for (int axis = 0; axis < 3; ++axis) out[axis] = float(p[axis] - r.renderOrigin[axis]);
     };
-    toRender(r.sceneBounds.minimum, r.order.sceneChange.boundsMinimum);
-    toRender(r.sceneBounds.maximum, r.order.sceneChange.boundsMaximum);
-    toRender(r.contentBounds.minimum, r.order.sceneChange.contentMinimum);
-    toRender(r.contentBounds.maximum, r.order.sceneChange.contentMaximum);
-    for (size_t i = 0; i < r.plugins.count(); ++i)
-        r.plugins.plugin(i).sceneChanged(r.order.sceneChange);
+    toRender(r.sceneBounds.minimum, r.order.sceneState.boundsMinimum);
+    toRender(r.sceneBounds.maximum, r.order.sceneState.boundsMaximum);
+    toRender(r.contentBounds.minimum, r.order.sceneState.contentMinimum);
+    toRender(r.contentBounds.maximum, r.order.sceneState.contentMaximum);
 
     const bool inspecting = !request.inspect.empty();
     fg::ExecutorOptions options = r.executor.options();

@@ -8,7 +8,9 @@
 
 namespace tyndall {
 
-inline constexpr size_t kMaxTermImages = 8;
+/// Three direct ones, and from each technique one a receiver: however the terms are dealt out, each on surfaces has one owner, and each in media
+/// one for each of four kinds of media at most.
+inline constexpr size_t kMaxTermImages = 3 + 4 + 4 * 4;
 
 struct TermImageHandle {
     TermSet terms = 0;

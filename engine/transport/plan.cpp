@@ -1,6 +1,6 @@
 #include "transport/plan.h"
 
-#include <vector>
+#include <algorithm>
 
 #include "core/settings.h"
 
@@ -8,6 +8,7 @@ namespace tyndall {
 namespace {
 
 constexpr std::string_view kDirectName = "direct";
+constexpr TermSet kTermsInMedia = kIndirectInMedia | bit(Term::LVE);
 
 /// kDirectPasses, an index, or kNobody when there is none of this name.
 int findTechnique(std::string_view name, std::span<const Technique> techniques) {
@@ -29,79 +30,240 @@ Error unknownTechnique(std::string_view name, std::span<const Technique> techniq
                  (nearest.empty() ? "" : "did you mean '" + nearest + "'? ") + "there are " + list};
 }
 
-TermSet claimsOf(int owner, std::span<const Technique> techniques) {
-    return owner == kDirectPasses ? kDirectTerms : techniques[size_t(owner)].claims;
+/// Gives terms to `owner`, those in media in these kinds alone.
+void give(FramePlan& plan, TermSet terms, int owner, MediaSet media = kAllMedia) {
+    for (uint32_t i = 0; i < kTermCount; ++i) {
+        if (!(terms & bit(Term(i)))) continue;
+        const MediaSet in = kTermsInMedia & bit(Term(i)) ? media : kAllMedia;
+        for (uint32_t kind = 0; kind < kMediaKindCount; ++kind)
+            if (in & (1u << kind)) plan.owner[i][kind] = owner;
+    }
 }
 
-void give(FramePlan& plan, TermSet terms, int owner) {
-    for (uint32_t i = 0; i < kTermCount; ++i)
-        if (terms & bit(Term(i))) plan.owner[i] = owner;
+/// Kinds of media in which a technique already computes the term.
+MediaSet takenIn(const FramePlan& plan, Term term) {
+    MediaSet taken = 0;
+    for (uint32_t kind = 0; kind < kMediaKindCount; ++kind)
+        if (plan.owner[size_t(term)][kind] >= 0) taken |= 1u << kind;
+    return taken;
 }
 
-/// "LSVE=surfels,LVVE=lpv": exactly these terms.
-Result<void> assign(FramePlan& plan, std::string_view list, std::span<const Technique> techniques) {
-    while (!list.empty()) {
-        const size_t comma = std::min(list.find(','), list.size());
-        const std::string_view item = list.substr(0, comma);
-        list.remove_prefix(std::min(comma + 1, list.size()));
-        const size_t equals = item.find('=');
-        if (equals == std::string_view::npos)
-            return Error{"'" + std::string(item) +
-                         "' is not an assignment: write TERM=TECHNIQUE, as in LVVE=octaves"};
-        const Result<TermSet> term = parseTerms(item.substr(0, equals));
-        if (!term) return term.error();
-        const std::string_view name = item.substr(equals + 1);
-        const int owner = findTechnique(name, techniques);
-        if (owner == kNobody) return unknownTechnique(name, techniques);
-        const TermSet claims = claimsOf(owner, techniques);
-        if (*term & ~claims)
-            return Error{"technique '" + std::string(name) + "' does not compute " +
-                         termNames(*term & ~claims) + ": it claims " + termNames(claims)};
-        for (uint32_t i = 0; i < kTermCount; ++i)
-            if ((*term & bit(Term(i))) && plan.owner[i] != kNobody)
-                return Error{"term " + std::string(termName(Term(i))) +
-                             " is given to two techniques: each term is computed once"};
-        give(plan, *term, owner);
+/// One item of a list of assignments.
+struct Assignment {
+    TermSet terms;
+    int owner;
+};
+
+Result<Assignment> parseAssignment(std::string_view item, std::span<const Technique> techniques) {
+    const size_t equals = item.find('=');
+    if (equals == std::string_view::npos)
+        return Error{"'" + std::string(item) +
+                     "' is not an assignment: write TERM=TECHNIQUE, as in LVVE=octaves"};
+    const Result<TermSet> terms = parseTerms(item.substr(0, equals));
+    if (!terms) return terms.error();
+    const std::string_view name = item.substr(equals + 1);
+    const int owner = findTechnique(name, techniques);
+    if (owner == kNobody) return unknownTechnique(name, techniques);
+    const TermSet claims =
+        owner == kDirectPasses ? kDirectTerms : techniques[size_t(owner)].claims;
+    if (*terms & ~claims)
+        return Error{"technique '" + std::string(name) + "' does not compute " +
+                     termNames(*terms & ~claims) + ": it claims " + termNames(claims)};
+    return Assignment{*terms, owner};
+}
+
+/// Gives the terms of one item to its technique, in the kinds of media that no other has.
+Result<void> take(FramePlan& plan, const Assignment& item, std::span<const Technique> techniques) {
+    if (item.owner == kDirectPasses) return {}; // they have them unless somebody takes them
+    const Technique& technique = techniques[size_t(item.owner)];
+    for (uint32_t i = 0; i < kTermCount; ++i) {
+        const Term term = Term(i);
+        if (!(item.terms & bit(term))) continue;
+        const MediaSet taken = takenIn(plan, term), rest = technique.media & ~taken;
+        const bool shares = (bit(term) & kTermsInMedia) != 0 && technique.separatesMedia;
+        if (taken != 0 && (!shares || rest == 0))
+            return Error{"term " + std::string(termName(term)) +
+                         " is given to two techniques: each term is computed once"};
+        give(plan, bit(term), item.owner, rest);
     }
     return {};
 }
 
-/// The technique that claims most of what can be seen beyond the direct terms.
-int chooseAutomatically(TermSet indirect, std::span<const Technique> techniques) {
-    int best = kNobody;
-    int most = 0;
+/// "LSVE=surfels,LVVE=lpv": of the indirect terms exactly these.
+Result<void> assign(FramePlan& plan, std::string_view list, std::span<const Technique> techniques) {
+    std::vector<Assignment> items;
+    while (!list.empty()) {
+        const size_t comma = std::min(list.find(','), list.size());
+        const Result<Assignment> item = parseAssignment(list.substr(0, comma), techniques);
+        if (!item) return item.error();
+        items.push_back(*item);
+        list.remove_prefix(std::min(comma + 1, list.size()));
+    }
+    // One that computes a term in few kinds of media comes before one that takes the rest.
+    const auto kinds = [&](const Assignment& item) {
+        return item.owner < 0 ? 0 : __builtin_popcount(techniques[size_t(item.owner)].media);
+    };
+    std::stable_sort(items.begin(), items.end(),
+                     [&](const auto& a, const auto& b) { return kinds(a) < kinds(b); });
+    for (const Assignment& item : items)
+        if (Result<void> taken = take(plan, item, techniques); !taken.ok()) return taken;
+    return {};
+}
+
+/// The smallest set that a technique can be given and that has all of `terms` in it.
+TermSet smallestWith(const Technique& technique, TermSet terms) {
+    TermSet best = technique.claims;
+    for (const TermSet set : technique.sets)
+        if ((terms & ~set) == 0 && __builtin_popcount(set) < __builtin_popcount(best)) best = set;
+    return best;
+}
+
+/// A technique that mixes terms must not be given a part of the mixture: it would be counted as what it is not.
+Result<void> checkSets(const FramePlan& plan, std::span<const Technique> techniques) {
     for (size_t i = 0; i < techniques.size(); ++i) {
-        const int count = __builtin_popcount(techniques[i].claims & indirect);
-        if (techniques[i].automatic && count > most) {
-            most = count;
-            best = int(i);
+        const TermSet given = plan.termsOf(int(i)) & plan.possible;
+        if (given == 0 || techniques[i].accepts(given, plan.possible)) continue;
+        const TermSet together = smallestWith(techniques[i], given) & plan.possible;
+        return Error{"technique '" + techniques[i].name + "' computes " + termNames(together) +
+                     " together: it cannot leave out " + termNames(together & ~given)};
+    }
+    return {};
+}
+
+/// A technique is told one set of kinds of media for all its terms in media.
+Result<void> checkKinds(const FramePlan& plan, std::span<const Technique> techniques) {
+    for (size_t i = 0; i < techniques.size(); ++i) {
+        const MediaSet all = plan.mediaOf(int(i));
+        for (uint32_t t = 0; t < kTermCount; ++t) {
+            if (!(plan.termsOf(int(i)) & bit(Term(t)) & kTermsInMedia)) continue;
+            MediaSet here = 0;
+            for (const TermShare& share : plan.sharesOf(Term(t)))
+                if (share.owner == int(i)) here = share.media;
+            if (here != all)
+                return Error{"technique '" + techniques[i].name +
+                             "' computes all its terms in the same kinds of media: " +
+                             std::string(termName(Term(t))) + " is left to it in " +
+                             mediaNames(here) + ", others in " + mediaNames(all)};
         }
+    }
+    return {};
+}
+
+/// Of the automatic techniques the one that computes most of `terms`; among equals the one with the least error.
+int bestFor(TermSet terms, TermSet possible, std::span<const Technique> techniques, bool inMedia) {
+    int best = kNobody, most = 0;
+    float least = 0;
+    for (size_t i = 0; i < techniques.size(); ++i) {
+        const Technique& technique = techniques[i];
+        const TermSet share = technique.claims & terms;
+        const int count = __builtin_popcount(share);
+        const float error = inMedia ? technique.errorInMedia : technique.errorOnSurfaces;
+        if (!technique.automatic || count == 0 || !technique.accepts(share, possible)) continue;
+        if (count < most || (count == most && !(error < least))) continue;
+        best = int(i);
+        most = count;
+        least = error;
     }
     return best;
 }
 
-std::string chooseAndExplain(FramePlan& plan, std::span<const Technique> techniques) {
+/// Surfaces may have their indirect light from one technique, and media from another.
+void chooseAndExplain(FramePlan& plan, std::span<const Technique> techniques) {
     const TermSet indirect = plan.possible & plan.wanted & ~kDirectTerms;
-    const int choice = chooseAutomatically(indirect, techniques);
-    if (choice == kNobody) {
-        plan.technique = "none";
-        return indirect == 0 ? "auto: the scene has direct light alone"
-                             : "auto: no technique here computes " + termNames(indirect);
+    const TermSet receivers[] = {kIndirectOnSurfaces & indirect, kIndirectInMedia & indirect};
+    std::string chosen;
+    for (const bool inMedia : {false, true}) {
+        const TermSet terms = receivers[inMedia];
+        const int choice = bestFor(terms, plan.possible, techniques, inMedia);
+        if (choice == kNobody) continue;
+        const Technique& technique = techniques[size_t(choice)];
+        const TermSet receiver = inMedia ? kIndirectInMedia : kIndirectOnSurfaces;
+        give(plan, technique.claims & plan.wanted & receiver, choice, technique.media);
+        if (plan.technique.empty())
+            plan.technique = technique.name;
+        else if (plan.technique != technique.name)
+            plan.technique += "+" + technique.name;
+        chosen += (chosen.empty() ? "'" : ", '") + technique.name + "' computes " +
+                  termNames(technique.claims & terms);
     }
-    const Technique& chosen = techniques[size_t(choice)];
-    give(plan, chosen.claims & plan.wanted, choice);
-    plan.technique = chosen.name;
-    return "auto: '" + chosen.name + "' claims " + termNames(chosen.claims & indirect) +
-           " of the indirect terms that this scene has";
+    if (plan.technique.empty()) plan.technique = "none";
+    plan.why = !chosen.empty()  ? "auto: " + chosen + " of the indirect terms that this scene has"
+               : indirect == 0 ? "auto: the scene has direct light alone"
+                               : "auto: no technique here computes " + termNames(indirect);
+}
+
+Result<void> decide(FramePlan& plan, std::string_view gi, std::span<const Technique> techniques) {
+    give(plan, kDirectTerms, kDirectPasses);
+    if (gi.find('=') != std::string_view::npos) {
+        plan.technique = std::string(gi);
+        plan.why = "assigned, term by term";
+        return assign(plan, gi, techniques);
+    }
+    if (gi == "none") {
+        plan.technique = "none";
+        plan.why = "direct terms only, as asked for";
+        return {};
+    }
+    if (gi == "auto") {
+        chooseAndExplain(plan, techniques);
+        return {};
+    }
+    const int owner = findTechnique(gi, techniques);
+    if (owner == kNobody || owner == kDirectPasses) return unknownTechnique(gi, techniques);
+    const Technique& technique = techniques[size_t(owner)];
+    give(plan, technique.claims & ~kDirectTerms, owner, technique.media);
+    plan.technique = std::string(gi);
+    plan.why = "asked for";
+    return {};
 }
 
 } // namespace
 
+bool Technique::accepts(TermSet terms, TermSet possible) const {
+    if (sets.empty()) return (terms & ~claims) == 0;
+    return std::any_of(sets.begin(), sets.end(), [&](TermSet set) {
+        return (set & possible) == (terms & possible);
+    });
+}
+
 TermSet FramePlan::termsOf(int index) const {
     TermSet set = 0;
     for (uint32_t i = 0; i < kTermCount; ++i)
-        if (owner[i] == index) set |= bit(Term(i));
+        for (const int who : owner[i])
+            if (who == index) set |= bit(Term(i));
     return set & wanted;
+}
+
+MediaSet FramePlan::mediaOf(int index) const {
+    MediaSet media = 0;
+    for (uint32_t i = 0; i < kTermCount; ++i)
+        for (uint32_t kind = 0; kind < kMediaKindCount; ++kind)
+            if (owner[i][kind] == index && (bit(Term(i)) & kTermsInMedia & wanted))
+                media |= 1u << kind;
+    return media;
+}
+
+std::vector<TermShare> FramePlan::sharesOf(Term term) const {
+    std::vector<TermShare> shares;
+    for (uint32_t kind = 0; kind < kMediaKindCount; ++kind) {
+        const int who = owner[size_t(term)][kind];
+        if (who == kNobody || !(bit(term) & wanted)) continue;
+        const auto known = std::find_if(shares.begin(), shares.end(),
+                                        [&](const TermShare& share) { return share.owner == who; });
+        if (known == shares.end())
+            shares.push_back({who, 1u << kind});
+        else
+            known->media |= 1u << kind;
+    }
+    return shares;
+}
+
+MediaSet FramePlan::missingIn(Term term) const {
+    if (!(bit(term) & wanted & possible)) return 0;
+    MediaSet missingKinds = 0;
+    for (uint32_t kind = 0; kind < kMediaKindCount; ++kind)
+        if (owner[size_t(term)][kind] == kNobody) missingKinds |= 1u << kind;
+    return bit(term) & kTermsInMedia ? missingKinds & kinds : missingKinds;
 }
 
 TermSet possibleTerms(const SceneTraits& traits) {
@@ -117,31 +279,17 @@ TermSet possibleTerms(const SceneTraits& traits) {
 Result<FramePlan> makePlan(std::string_view gi, TermSet wanted,
                            std::span<const Technique> techniques, const SceneTraits& traits) {
     FramePlan plan;
-    plan.owner.fill(kNobody);
+    for (auto& kinds : plan.owner) kinds.fill(kNobody);
     plan.wanted = wanted;
     plan.possible = possibleTerms(traits);
-    if (gi.find('=') != std::string_view::npos) {
-        if (Result<void> done = assign(plan, gi, techniques); !done) return done.error();
-        plan.technique = std::string(gi);
-        plan.why = "assigned on the command line";
-    } else {
-        give(plan, kDirectTerms, kDirectPasses);
-        if (gi == "none") {
-            plan.technique = "none";
-            plan.why = "direct terms only, as asked for";
-        } else if (gi == "auto") {
-            plan.why = chooseAndExplain(plan, techniques);
-        } else {
-            const int owner = findTechnique(gi, techniques);
-            if (owner == kNobody || owner == kDirectPasses) return unknownTechnique(gi, techniques);
-            give(plan, techniques[size_t(owner)].claims & ~kDirectTerms, owner);
-            plan.technique = std::string(gi);
-            plan.why = "asked for";
-        }
+    plan.kinds = traits.scatteringMedia ? traits.kinds : 0;
+    if (Result<void> done = decide(plan, gi, techniques); !done.ok()) return done.error();
+    if (Result<void> fits = checkSets(plan, techniques); !fits.ok()) return fits.error();
+    if (Result<void> fits = checkKinds(plan, techniques); !fits.ok()) return fits.error();
+    for (uint32_t i = 0; i < kTermCount; ++i) {
+        if (!plan.sharesOf(Term(i)).empty()) plan.rendered |= bit(Term(i));
+        if (plan.missingIn(Term(i)) != 0) plan.missing |= bit(Term(i));
     }
-    for (uint32_t i = 0; i < kTermCount; ++i)
-        if (plan.owner[i] != kNobody && (wanted & bit(Term(i)))) plan.rendered |= bit(Term(i));
-    plan.missing = plan.wanted & plan.possible & ~plan.rendered;
     return plan;
 }
 

@@ -4,8 +4,10 @@
 #include <array>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "core/result.h"
+#include "transport/media_kinds.h"
 #include "transport/terms.h"
 
 namespace tyndall {
@@ -17,6 +19,16 @@ struct Technique {
     std::string plugin; // who brings it
     TermSet claims = 0;
     bool automatic = true; // `auto` may choose it; else it is there for who asks for it
+    /// The sets of terms that it can be given: one that mixes the light of several terms computes them together or not at all.
+    /// Empty: any part of its claims.
+    std::vector<TermSet> sets;
+    MediaSet media = kAllMedia; // kinds of media in which it computes its terms in media
+    bool separatesMedia = true; // it can leave out some of these kinds
+    // What `auto` judges it by: typical figures at medium quality, see plugin::TechniqueInfo.
+    float cost = 1, errorOnSurfaces = 1, errorInMedia = 1;
+
+    /// Can it compute exactly these terms, of those that are `possible` at all?
+    [[nodiscard]] bool accepts(TermSet terms, TermSet possible) const;
 };
 
 /// What about the scene decides whether a term can be other than zero.
@@ -25,30 +37,45 @@ struct SceneTraits {
     bool media = false;           // any medium with extinction or emission that matters
     bool scatteringMedia = false; // any medium that scatters
     bool lights = false;          // lights, emitters or an environment
+    MediaSet kinds = kAllMedia;   // of the media that scatter
 };
 
 inline constexpr int kNobody = -1;
 inline constexpr int kDirectPasses = -2;
 
+/// Who computes a term, and in which kinds of media. The kinds matter to terms in media (kIndirectInMedia, LVE) alone.
+struct TermShare {
+    int owner = kNobody; // kDirectPasses, or an index into the techniques
+    MediaSet media = 0;
+};
+
 struct FramePlan {
-    /// Per term: kDirectPasses, kNobody, or an index into the techniques.
-    std::array<int, kTermCount> owner{};
+    /// By term and kind of medium: kDirectPasses, kNobody, or an index into the techniques. A term on surfaces has one owner.
+    std::array<std::array<int, kMediaKindCount>, kTermCount> owner{};
     TermSet wanted = 0;    // asked for
     TermSet possible = 0;  // can be other than zero in this scene
-    TermSet rendered = 0;  // wanted, and somebody computes it
-    TermSet missing = 0;   // wanted and possible, but nobody claims it
+    MediaSet kinds = 0;    // of media that scatter in this scene
+    TermSet rendered = 0;  // wanted, and somebody computes it, at least in some media
+    TermSet missing = 0;   // wanted and possible, but nobody computes it, at least in some media
     std::string technique; // "none", a name, or the assignments
     std::string why;       // one sentence
 
     /// The terms that technique `index` computes (kDirectPasses for the engine's own).
     [[nodiscard]] TermSet termsOf(int index) const;
+    /// The kinds of media in which it computes its terms in media.
+    [[nodiscard]] MediaSet mediaOf(int index) const;
+    /// Who computes a term: none, or one, or one for each of several kinds of media.
+    [[nodiscard]] std::vector<TermShare> sharesOf(Term term) const;
+    /// The scene's kinds of media in which nobody computes the term.
+    [[nodiscard]] MediaSet missingIn(Term term) const;
 };
 
 /// Terms that these traits allow to be other than zero.
 TermSet possibleTerms(const SceneTraits& traits);
 
-/// `gi` is auto, none, a technique's name, or a list TERM=TECHNIQUE,… (terms not named are then not rendered; `direct` names
-/// the engine's own passes). Errors name the unknown word and list what there is, or say which terms a technique claims.
+/// `gi` is auto, none, a technique's name, or a list TERM=TECHNIQUE,… of indirect terms: those that it does not name are not rendered.
+/// Direct terms stay with the engine's own passes (`direct`), unless the list gives one to a technique that claims it.
+/// Errors name the unknown word and list what there is, or say which terms a technique claims, or computes only together.
 Result<FramePlan> makePlan(std::string_view gi, TermSet wanted,
                            std::span<const Technique> techniques, const SceneTraits& traits);
 

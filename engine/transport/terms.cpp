@@ -4,11 +4,21 @@
 #include <vector>
 
 #include "core/settings.h"
+#include "transport/media_kinds.h"
 
 namespace tyndall {
 namespace {
 constexpr std::array<std::string_view, kTermCount> kNames = {
     "LE", "LSE", "LVE", "LSSE", "LVSE", "LSVE", "LVVE", "LXSSE", "LXVSE", "LXSVE", "LXVVE"};
+}
+
+std::string mediaNames(MediaSet media) {
+    static constexpr std::string_view kMediaNames[kMediaKindCount] = {"shapes", "height fog",
+                                                                      "grids", "particles"};
+    std::string names;
+    for (uint32_t i = 0; i < kMediaKindCount; ++i)
+        if (media & (1u << i)) names += (names.empty() ? "" : ", ") + std::string(kMediaNames[i]);
+    return names;
 }
 
 std::string_view termName(Term term) { return kNames[uint32_t(term)]; }

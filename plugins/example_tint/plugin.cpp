@@ -38,27 +38,16 @@ class Tint final : public plugin::Plugin {
 public:
     const plugin::PluginInfo& info() const override {
         static constexpr plugin::PluginInfo kInfo{
-            "example_tint", "0.1.0", "Multiplies the picture by a colour.", nullptr, 0};
+            "example_tint", "0.1.0", "Multiplies the picture by a colour."};
         return kInfo;
     }
-    uint32_t settingsGroupCount() const override { return 1; }
-    void settingsGroup(uint32_t, const SettingDesc** fields, uint32_t* count,
-                       void** values) override {
-        *fields = kSettings;
-        *count = uint32_t(std::size(kSettings));
-        *values = &settings_;
+    plugin::SettingsTable settings() override {
+        return {kSettings, uint32_t(std::size(kSettings)), &settings_, nullptr, 0};
     }
-    void presets(const PresetEntry**, uint32_t* count) const override { *count = 0; }
     bool setup(plugin::Host& host, char*, uint32_t) override {
         host.addShader("example_tint/tint.comp", kShader);
         return true;
     }
-    void sceneChanged(const plugin::SceneChange&) override {}
-
-    plugin::FrameOutputs addPasses(fg::FrameGraph&, uint32_t, const plugin::FrameInputs&) override {
-        return {};
-    }
-
     fg::TextureHandle addPostPasses(fg::FrameGraph& graph, const plugin::FrameInputs&,
                                     fg::TextureHandle color) override {
         struct Data {

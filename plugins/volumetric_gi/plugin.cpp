@@ -1,96 +1,56 @@
-// The volumetric global-illumination plugin: a table of techniques and their settings. Each technique lives in its own folder.
+// The volumetric global-illumination plugin: a table of techniques. Each lives in a folder of its own.
 
-#include "plugin/plugin_api.h"
+#include <array>
 
-#include "volumetric_gi/lpv/lpv_technique.h"
-#include "volumetric_gi/octaves/octaves_pass.h"
-#include "volumetric_gi/vpl/vpl_technique.h"
+#include "volumetric_gi/shared/gi_technique.h"
+
+/// The table, a line a technique: X(Lpv) stands for makeLpv(), in lpv/lpv_technique.cpp.
+#define TYNDALL_TECHNIQUES(X)                                                                      \
+    X(Octaves)                                                                                     \
+    X(Lpv)                                                                                         \
+    X(Vpl)
 
 namespace tyndall::volumetric_gi {
+
+#define TYNDALL_DECLARE(NAME) std::unique_ptr<GiTechnique> make##NAME(SharedParts& shared);
+TYNDALL_TECHNIQUES(TYNDALL_DECLARE)
+
 namespace {
 
-constexpr plugin::TechniqueInfo kTechniques[] = {
-    {"octaves", "Octaves of multiple scattering",
-     "Baseline: multiple scattering as reduced copies of single scattering, inside the march.",
-     terms(Term::LVVE, Term::LXVVE), 1},
-    {"lpv", "Light propagation volume",
-     "Light that surfaces reflect and media scatter, propagated in a lattice: all indirect light.",
-     kIndirectOnSurfaces | kIndirectInMedia,
-     0}, // seconds a frame without a GPU: who wants it asks for it
-    {"vpl", "Virtual point lights",
-     "Light of random walks, gathered from the virtual lights that they leave: all indirect light.",
-     kIndirectOnSurfaces | kIndirectInMedia, 0},
-};
-/// Of all techniques.
-struct CommonSettings {
-    int32_t paper; // index into kModeNames
-};
+using Make = std::unique_ptr<GiTechnique> (*)(SharedParts&);
+#define TYNDALL_MAKE(NAME) make##NAME,
+constexpr Make kTechniques[] = {TYNDALL_TECHNIQUES(TYNDALL_MAKE)};
+
 constexpr const char* kModeNames[] = {"corrected", "paper"};
-const SettingDesc kCommonSettings[] = {
-    TYNDALL_ENUM(CommonSettings, paper, "gi.mode", "Equations", kModeNames, 0,
+const SettingDesc kSettings[] = {
+    TYNDALL_ENUM(SharedParts, mode, "gi.mode", "Equations", kModeNames, 0,
                  "corrected, or as the techniques' papers print them, as far as that can work."),
 };
 
-constexpr uint32_t kLpv = 1, kVpl = 2; // indices in the table
 constexpr plugin::PluginInfo kInfo{"volumetric_gi", "0.1.0",
-                                   "Global illumination in scenes with participating media.",
-                                   kTechniques, uint32_t(std::size(kTechniques))};
+                                   "Global illumination in scenes with participating media."};
 
 class VolumetricGi final : public plugin::Plugin {
 public:
+    VolumetricGi() {
+        for (size_t i = 0; i < techniques_.size(); ++i) techniques_[i] = kTechniques[i](shared_);
+    }
+
     const plugin::PluginInfo& info() const override { return kInfo; }
-
-    uint32_t settingsGroupCount() const override { return 4; }
-    void settingsGroup(uint32_t index, const SettingDesc** fields, uint32_t* count,
-                       void** values) override {
-        const auto give = [&](std::span<const SettingDesc> all, void* of) {
-            *fields = all.data();
-            *count = uint32_t(all.size());
-            *values = of;
-        };
-        if (index == 0) return give(kCommonSettings, &common_);
-        if (index == 1) return give(octavesSettings(), &octaves_);
-        if (index == 2) return give(lpvSettings(), &lpv_.settings());
-        give(vplSettings(), &vpl_.settings());
+    plugin::SettingsTable settings() override {
+        return {kSettings, uint32_t(std::size(kSettings)), &shared_, nullptr, 0};
     }
-    void presets(const PresetEntry** entries, uint32_t* count) const override {
-        *entries = presets_.data();
-        *count = uint32_t(presets_.size());
-    }
-
     bool setup(plugin::Host& host, char*, uint32_t) override {
-        host_ = &host;
+        shared_.host = &host;
         return true; // its shaders are among the engine's
     }
-    void sceneChanged(const plugin::SceneChange&) override {
-    } // the march reads everything anew each frame
-
-    plugin::FrameOutputs addPasses(fg::FrameGraph& graph, uint32_t technique,
-                                   const plugin::FrameInputs& inputs) override {
-        if (technique == kLpv) return lpv_.addPasses(graph, inputs, *host_, common_.paper != 0);
-        if (technique == kVpl) return vpl_.addPasses(graph, inputs, *host_);
-        plugin::FrameOutputs outputs;
-        outputs.inScatter = addOctavesPass(graph, inputs, octaves_);
-        return outputs;
-    }
-    fg::TextureHandle addPostPasses(fg::FrameGraph& graph, const plugin::FrameInputs& inputs,
-                                    fg::TextureHandle color) override {
-        return vpl_.addPostPasses(graph, inputs, lpv_.addPostPasses(graph, inputs, color));
-    }
+    uint32_t techniqueCount() const override { return uint32_t(techniques_.size()); }
+    plugin::Technique* technique(uint32_t index) override { return techniques_[index].get(); }
     void destroy() override { delete this; }
 
 private:
-    plugin::Host* host_ = nullptr;
-    CommonSettings common_{};
-    OctavesSettings octaves_{};
-    LpvTechnique lpv_;
-    VplTechnique vpl_;
-    std::vector<PresetEntry> presets_ = [] {
-        std::vector<PresetEntry> all(octavesPresets().begin(), octavesPresets().end());
-        all.insert(all.end(), lpvPresets().begin(), lpvPresets().end());
-        all.insert(all.end(), vplPresets().begin(), vplPresets().end());
-        return all;
-    }();
+    SharedParts shared_;
+    std::array<std::unique_ptr<GiTechnique>, std::size(kTechniques)> techniques_;
 };
 
 } // namespace

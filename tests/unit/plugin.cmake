@@ -1,5 +1,5 @@
 # Libraries that a registry must refuse, each for its own reason.
-foreach(fault abi size nothing incomplete)
+foreach(fault abi size headers layout nothing incomplete)
   add_library(faulty_plugin_${fault} MODULE plugin_faulty.cpp)
   target_compile_definitions(faulty_plugin_${fault} PRIVATE FAULT_${fault})
   target_link_libraries(faulty_plugin_${fault} PRIVATE tyndall_warnings Tyndall::plugin)
@@ -7,4 +7,4 @@ foreach(fault abi size nothing incomplete)
 endforeach()
 tyndall_test(unit_plugin LABEL unit SOURCES plugin_registry_test.cpp DEPENDS Tyndall::plugin Tyndall::builtin_plugins)
 target_compile_definitions(unit_plugin PRIVATE FAULTY_PLUGINS="${CMAKE_BINARY_DIR}/tests/plugins" PLUGINS="${CMAKE_BINARY_DIR}/lib/plugins")
-add_dependencies(unit_plugin faulty_plugin_abi faulty_plugin_size faulty_plugin_nothing faulty_plugin_incomplete tyndall_plugin_example_tint_shared)
+add_dependencies(unit_plugin faulty_plugin_abi faulty_plugin_size faulty_plugin_headers faulty_plugin_layout faulty_plugin_nothing faulty_plugin_incomplete tyndall_plugin_example_tint_shared)

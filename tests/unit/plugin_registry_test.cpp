@@ -31,6 +31,10 @@ TEST(PluginRegistry, AnotherAbiVersionIsRefusedWithBothNumbers) {
 
 TEST(PluginRegistry, EveryOtherFaultHasItsSentence) {
     EXPECT_NE(refusal(FAULTY_PLUGINS "/faulty_plugin_size.so").find("bytes"), std::string::npos);
+    for (const char* fault : {"headers", "layout"})
+        EXPECT_NE(refusal(std::string(FAULTY_PLUGINS "/faulty_plugin_") + fault + ".so")
+                      .find("other headers"),
+                  std::string::npos);
     EXPECT_NE(refusal(FAULTY_PLUGINS "/faulty_plugin_incomplete.so").find("incomplete"),
               std::string::npos);
     EXPECT_NE(

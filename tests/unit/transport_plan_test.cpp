@@ -5,10 +5,26 @@
 namespace tyndall {
 namespace {
 
+Technique technique(const char* name, TermSet claims, std::vector<TermSet> sets = {}) {
+    Technique made;
+    made.name = name;
+    made.claims = claims;
+    made.sets = std::move(sets);
+    return made;
+}
+
+const TermSet kOctaves = terms(Term::LVVE, Term::LXVVE);
+/// Computes its terms in media inside particles alone.
+Technique network() {
+    Technique made = technique("network", kOctaves);
+    made.media = kParticleMedia;
+    return made;
+}
 const std::vector<Technique> kTechniques = {
-    {"octaves", "Octaves", "", "volumetric_gi", terms(Term::LVVE, Term::LXVVE)},
-    {"lattice", "Lattice", "", "other", kIndirectOnSurfaces | kIndirectInMedia},
-    {"fogonly", "Fog", "", "other", terms(Term::LVE, Term::LVVE)},
+    technique("octaves", kOctaves, {kOctaves}),
+    technique("lattice", kIndirectOnSurfaces | kIndirectInMedia),
+    technique("fogonly", terms(Term::LVE, Term::LVVE)),
+    network(),
 };
 const SceneTraits kEverything{true, true, true, true};
 
@@ -29,15 +45,19 @@ TEST(TransportTerms, EveryTermIsDirectOrOnSurfacesOrInMediaAndOnlyOnce) {
 
 TEST(TransportPlan, EveryTermHasAtMostOneOwnerWhateverIsAskedFor) {
     for (const char* gi :
-         {"auto", "none", "octaves", "lattice", "fogonly", "LVVE=octaves,LSVE=lattice"})
+         {"auto", "none", "lattice", "fogonly", "network", "LVVE=fogonly,LSVE=lattice", "LVVE=network,LVVE=lattice"})
         for (TermSet wanted : {kAllTerms, kDirectTerms, bit(Term::LVVE), TermSet(0)}) {
             const Result<FramePlan> plan = makePlan(gi, wanted, kTechniques, kEverything);
             ASSERT_TRUE(plan.ok()) << gi;
             TermSet seen = 0;
-            for (int owner = kDirectPasses; owner < int(kTechniques.size()); ++owner) {
-                if (owner == kNobody) continue;
-                EXPECT_EQ(seen & plan->termsOf(owner), 0u) << gi;
-                seen |= plan->termsOf(owner);
+            for (uint32_t t = 0; t < kTermCount; ++t) {
+                MediaSet taken = 0;
+                for (const TermShare& share : plan->sharesOf(Term(t))) {
+                    EXPECT_EQ(taken & share.media, 0u) << gi;
+                    taken |= share.media;
+                    EXPECT_TRUE(plan->termsOf(share.owner) & bit(Term(t))) << gi;
+                }
+                if (taken != 0) seen |= bit(Term(t));
             }
             EXPECT_EQ(seen, plan->rendered);
             EXPECT_EQ(plan->rendered & ~wanted, 0u);
@@ -72,10 +92,77 @@ TEST(TransportPlan, AutoLeavesAloneWhatIsOnlyForWhoAsks) {
     EXPECT_EQ(makePlan("lattice", kAllTerms, techniques, kEverything).value().missing, 0u);
 }
 
-TEST(TransportPlan, AssignmentsRenderExactlyWhatTheyName) {
+TEST(TransportPlan, AssignmentsRenderTheIndirectTermsThatTheyNameAndKeepTheDirectOnes) {
+    const auto rendered = [](const char* gi, TermSet wanted) {
+        return makePlan(gi, wanted, kTechniques, kEverything).value().rendered;
+    };
+    EXPECT_EQ(rendered("LSVE=lattice", kAllTerms), kDirectTerms | bit(Term::LSVE));
+    EXPECT_EQ(rendered("LSE=direct,LSVE=lattice", kAllTerms), kDirectTerms | bit(Term::LSVE));
+    EXPECT_EQ(rendered("LSVE=lattice", terms(Term::LE, Term::LSVE)), terms(Term::LE, Term::LSVE));
     const FramePlan plan =
-        makePlan("LSE=direct,LVVE=octaves", kAllTerms, kTechniques, kEverything).value();
-    EXPECT_EQ(plan.rendered, terms(Term::LSE, Term::LVVE));
+        makePlan("LVE=fogonly", kAllTerms, kTechniques, kEverything).value();
+    EXPECT_EQ(plan.termsOf(kDirectPasses), terms(Term::LE, Term::LSE)) << "taken from the engine";
+    EXPECT_EQ(plan.termsOf(2), bit(Term::LVE));
+}
+
+TEST(TransportPlan, ATechniqueThatMixesTermsGetsAllOfThemOrNone) {
+    const Result<FramePlan> part = makePlan("LVVE=octaves", kAllTerms, kTechniques, kEverything);
+    ASSERT_FALSE(part.ok());
+    EXPECT_NE(part.message().find("cannot leave out LXVVE"), std::string::npos) << part.message();
+    EXPECT_FALSE(makePlan("octaves", bit(Term::LXVVE), kTechniques, kEverything).ok());
+    EXPECT_TRUE(
+        makePlan("LVVE=octaves,LXVVE=octaves", kAllTerms, kTechniques, kEverything).ok());
+    // What the scene cannot have is not missed: in vacuum nothing of the mixture is left.
+    EXPECT_TRUE(makePlan("octaves", bit(Term::LXVVE), kTechniques, {true, false, false, true}).ok());
+}
+
+TEST(TransportPlan, OneKindOfMediumFromOneTechniqueAndTheRestFromAnother) {
+    for (const char* gi : {"LVVE=network,LVVE=lattice", "LVVE=lattice,LVVE=network"}) {
+        const FramePlan plan = makePlan(gi, kAllTerms, kTechniques, kEverything).value();
+        EXPECT_EQ(plan.mediaOf(3), kParticleMedia) << gi;
+        EXPECT_EQ(plan.mediaOf(1), kAllMedia & ~kParticleMedia) << gi;
+        EXPECT_EQ(plan.missingIn(Term::LVVE), 0u) << gi;
+    }
+    // Where the other cannot leave out particles, it cannot be had twice.
+    std::vector<Technique> techniques = kTechniques;
+    techniques[1].separatesMedia = false;
+    EXPECT_FALSE(
+        makePlan("LVVE=network,LVVE=lattice", kAllTerms, techniques, kEverything).ok());
+    // All that it computes in media it computes in the same media.
+    const Result<FramePlan> uneven =
+        makePlan("LVVE=network,LVVE=lattice,LSVE=lattice", kAllTerms, kTechniques, kEverything);
+    ASSERT_FALSE(uneven.ok());
+    EXPECT_NE(uneven.message().find("the same kinds of media"), std::string::npos);
+}
+
+TEST(TransportPlan, WhatIsComputedInSomeMediaIsMissingInTheOthers) {
+    SceneTraits traits = kEverything;
+    traits.kinds = kParticleMedia | kHeightMedia;
+    const FramePlan plan = makePlan("network", kAllTerms, kTechniques, traits).value();
+    EXPECT_TRUE(plan.rendered & bit(Term::LVVE));
+    EXPECT_TRUE(plan.missing & bit(Term::LVVE));
+    EXPECT_EQ(plan.missingIn(Term::LVVE), kHeightMedia);
+    traits.kinds = kParticleMedia;
+    EXPECT_FALSE(makePlan("network", kAllTerms, kTechniques, traits).value().missing &
+                 bit(Term::LVVE));
+}
+
+TEST(TransportPlan, AutoMayTakeSurfacesFromOneAndMediaFromAnother) {
+    std::vector<Technique> techniques = kTechniques;
+    techniques[1].claims = kIndirectOnSurfaces;
+    const FramePlan plan = makePlan("auto", kAllTerms, techniques, kEverything).value();
+    EXPECT_EQ(plan.termsOf(1), kIndirectOnSurfaces);
+    EXPECT_EQ(plan.termsOf(0), kOctaves);
+    EXPECT_EQ(plan.technique, "lattice+octaves");
+    EXPECT_EQ(plan.missing, terms(Term::LSVE, Term::LXSVE));
+}
+
+TEST(TransportPlan, AmongEqualsAutoTakesTheOneWithTheLeastError) {
+    std::vector<Technique> techniques = {technique("rough", kIndirectInMedia),
+                                         technique("fine", kIndirectInMedia)};
+    techniques[0].errorInMedia = 0.2f;
+    techniques[1].errorInMedia = 0.1f;
+    EXPECT_EQ(makePlan("auto", kAllTerms, techniques, kEverything).value().technique, "fine");
 }
 
 TEST(TransportPlan, RefusalsSayWhatIsThere) {
@@ -87,7 +174,7 @@ TEST(TransportPlan, RefusalsSayWhatIsThere) {
                   .message()
                   .find("claims LVVE,LXVVE"),
               std::string::npos);
-    EXPECT_NE(makePlan("LVVE=octaves,LVVE=lattice", kAllTerms, kTechniques, kEverything)
+    EXPECT_NE(makePlan("LSVE=lattice,LSVE=lattice", kAllTerms, kTechniques, kEverything)
                   .message()
                   .find("two techniques"),
               std::string::npos);

@@ -13,6 +13,23 @@
 namespace tyndall::volumetric_gi {
 namespace {
 
+/// Of the light that a lattice mixes all can be told apart by receiver. What surfaces or media have scattered once before comes from a lattice into which
+/// nothing else goes, and in which nothing is scattered on.
+constexpr TermSet kFromSurfaces = terms(Term::LSSE, Term::LSVE),
+                  kFromMedia = terms(Term::LVSE, Term::LVVE), kOnce = kFromSurfaces | kFromMedia;
+constexpr TermSet kSets[] = {kIndirectOnSurfaces | kIndirectInMedia,
+                             kIndirectOnSurfaces,
+                             kIndirectInMedia,
+                             kOnce,
+                             kOnce & kIndirectOnSurfaces,
+                             kOnce & kIndirectInMedia,
+                             kFromSurfaces,
+                             bit(Term::LSSE),
+                             bit(Term::LSVE),
+                             kFromMedia,
+                             bit(Term::LVSE),
+                             bit(Term::LVVE)};
+
 constexpr double kLeastPower = 1e-25; // watts of all lights; units for less would overflow
 
 Bounds makeBounds(const float minimum[4], const float maximum[4]) {
@@ -70,7 +87,7 @@ uint64_t LpvTechnique::sourceKey(const plugin::FrameInputs& inputs, uint64_t pla
 }
 
 void LpvTechnique::addSources(fg::FrameGraph& graph, const plugin::FrameInputs& inputs,
-                              std::vector<Lattice>& lattices, plugin::Host& host) {
+                              std::vector<Lattice>& lattices) {
     const Bounds bounds = makeBounds(inputs.scene.boundsMinimum, inputs.scene.boundsMaximum);
     std::vector<Bounds> boxes;
     for (const Lattice& lattice : lattices)
@@ -78,7 +95,7 @@ void LpvTechnique::addSources(fg::FrameGraph& graph, const plugin::FrameInputs& 
     const RsmPlan plan = planRsm({inputs.lightData, inputs.lights.lightCount}, bounds, boxes,
                                  settings_.rsmSize, settings_.rsmLights, settings_.rsmRectPoints);
     if (plan.lightsLeftOut > 0 && plan.lightsLeftOut != saidLeftOut_)
-        host.log(("lpv: " + std::to_string(plan.lightsLeftOut) + " of " +
+        host().log(("lpv: " + std::to_string(plan.lightsLeftOut) + " of " +
                   std::to_string(inputs.lights.lightCount) +
                   " lights light directly alone: gi.lpv.rsmLights is " +
                   std::to_string(settings_.rsmLights))
@@ -167,9 +184,30 @@ LatticeLight LpvTechnique::addLight(fg::FrameGraph& graph, const plugin::FrameIn
     return light;
 }
 
+const plugin::TechniqueInfo& LpvTechnique::info() const {
+    static constexpr plugin::TechniqueInfo kInfo{
+        .name = "lpv",
+        .title = "Light propagation volume",
+        .help = "Light that surfaces reflect and media scatter, propagated in a lattice: all indirect light.",
+        .claims = kIndirectOnSurfaces | kIndirectInMedia,
+        .sets = kSets,
+        .setCount = uint32_t(std::size(kSets)),
+        .media = kAllMedia,
+        .separatesMedia = 0,
+        .automatic = 0, // seconds a frame without a GPU: who wants it asks for it
+        .cost = 3,
+        .errorOnSurfaces = 0.15f,
+        .errorInMedia = 0.03f};
+    return kInfo;
+}
+
+plugin::SettingsTable LpvTechnique::settings() {
+    return table(lpvSettings(), &settings_, lpvPresets());
+}
+
 plugin::FrameOutputs LpvTechnique::addPasses(fg::FrameGraph& graph,
-                                             const plugin::FrameInputs& inputs, plugin::Host& host,
-                                             bool printed) {
+                                             const plugin::FrameInputs& inputs) {
+    const bool printed = asPrinted();
     finest_ = {};
     PlacementRequest placement = placementOf(inputs, settings_);
     if (placement.bounds.empty() || inputs.lights.lightCount == 0) return {};
@@ -186,7 +224,7 @@ plugin::FrameOutputs LpvTechnique::addPasses(fg::FrameGraph& graph,
         lattices[i].medium = addLatticeMedium(graph, inputs, levels[i]);
         lattices[i].links = addLatticeLinks(graph, inputs, levels[i]);
     }
-    addSources(graph, inputs, lattices, host);
+    addSources(graph, inputs, lattices);
 
     const fg::BufferDesc desc{gpu::kLpvMostLevels * sizeof(gpu::LpvControl)};
     fg::BufferHandle control = graph.persistentBuffer("gi.lpv.control", desc).handle;
@@ -198,9 +236,9 @@ plugin::FrameOutputs LpvTechnique::addPasses(fg::FrameGraph& graph,
     light_ = light;
     plugin::FrameOutputs outputs;
     if (inputs.terms & kIndirectOnSurfaces)
-        outputs.surfaceRadiance = addSurfaceLookup(graph, inputs, places.levels, light);
+        outputs.onSurfaces = addSurfaceLookup(graph, inputs, places.levels, light);
     if (inputs.terms & ~kIndirectOnSurfaces)
-        outputs.inScatter =
+        outputs.inMedia =
             addMediumLookup(graph, inputs, places.levels, light, 1 << settings_.march);
     if (inputs.statistics) {
         nameStatistics(lattices.size());
@@ -211,13 +249,17 @@ plugin::FrameOutputs LpvTechnique::addPasses(fg::FrameGraph& graph,
     return outputs;
 }
 
-fg::TextureHandle LpvTechnique::addPostPasses(fg::FrameGraph& graph,
+fg::TextureHandle LpvTechnique::addDebugView(fg::FrameGraph& graph,
                                               const plugin::FrameInputs& inputs,
                                               fg::TextureHandle color) {
     const fg::TextureHandle shown =
         addLatticeSlice(graph, inputs, settings_, finest_, light_, color);
     finest_ = {}; // of this frame alone
     return shown;
+}
+
+std::unique_ptr<GiTechnique> makeLpv(SharedParts& shared) {
+    return std::make_unique<LpvTechnique>(shared);
 }
 
 } // namespace tyndall::volumetric_gi

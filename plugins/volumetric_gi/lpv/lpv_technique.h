@@ -6,30 +6,32 @@
 #include <string>
 #include <vector>
 
-#include "plugin/plugin_api.h"
 #include "shared/lpv.h"
 #include "volumetric_gi/lpv/lpv_lattice.h"
 #include "volumetric_gi/lpv/lpv_light.h"
 #include "volumetric_gi/lpv/lpv_settings.h"
 #include "volumetric_gi/rsm/rsm_views.h"
+#include "volumetric_gi/shared/gi_technique.h"
 
 namespace tyndall::volumetric_gi {
 
-class LpvTechnique {
+class LpvTechnique final : public GiTechnique {
 public:
-    [[nodiscard]] LpvSettings& settings() { return settings_; }
-    /// Light of the lattices on surfaces and in media, as far as `inputs.terms` asks for it.
-    /// Says once through `host` how many lights have no map.
-    /// `printed`: by the scheme as the paper prints it, in one lattice around the scene and from nothing each frame.
-    plugin::FrameOutputs addPasses(fg::FrameGraph& graph, const plugin::FrameInputs& inputs,
-                                   plugin::Host& host, bool printed);
-    /// A slice of the finest lattice in the finished picture, where settings ask for it.
-    fg::TextureHandle addPostPasses(fg::FrameGraph& graph, const plugin::FrameInputs& inputs,
-                                    fg::TextureHandle color);
+    using GiTechnique::GiTechnique;
+    const plugin::TechniqueInfo& info() const override;
+    plugin::SettingsTable settings() override;
+    /// Light of the lattices on surfaces and in media, as far as `inputs.terms` asks for it: all of it, or what surfaces or media (or both) have
+    /// scattered once before. Says once through the host how many lights have no map.
+    /// As printed: by the scheme as the paper prints it, in one lattice around the scene and from nothing each frame.
+    plugin::FrameOutputs addPasses(fg::FrameGraph& graph,
+                                   const plugin::FrameInputs& inputs) override;
+    /// A slice of the finest lattice, where settings ask for it.
+    fg::TextureHandle addDebugView(fg::FrameGraph& graph, const plugin::FrameInputs& inputs,
+                                   fg::TextureHandle color) override;
 
 private:
     void addSources(fg::FrameGraph& graph, const plugin::FrameInputs& inputs,
-                    std::vector<Lattice>& lattices, plugin::Host& host);
+                    std::vector<Lattice>& lattices);
     LatticeLight addLight(fg::FrameGraph& graph, const plugin::FrameInputs& inputs,
                           std::vector<Lattice>& lattices, const SharedPlaces& places,
                           fg::BufferHandle& control);

@@ -288,11 +288,31 @@ VplGather VplTechnique::gather(const plugin::FrameInputs& inputs) const {
     return gather;
 }
 
+const plugin::TechniqueInfo& VplTechnique::info() const {
+    static constexpr plugin::TechniqueInfo kInfo{
+        .name = "vpl",
+        .title = "Virtual point lights",
+        .help = "Light of random walks, gathered from the virtual lights that they leave: all indirect light.",
+        .claims = kIndirectOnSurfaces | kIndirectInMedia,
+        .sets = nullptr,
+        .setCount = 0,
+        .media = kAllMedia,
+        .separatesMedia = 0,
+        .automatic = 0,
+        .cost = 6,
+        .errorOnSurfaces = 0.1f,
+        .errorInMedia = 0.05f};
+    return kInfo;
+}
+
+plugin::SettingsTable VplTechnique::settings() {
+    return table(vplSettings(), &settings_, vplPresets());
+}
+
 plugin::FrameOutputs VplTechnique::addPasses(fg::FrameGraph& graph,
-                                             const plugin::FrameInputs& inputs,
-                                             plugin::Host& host) {
+                                             const plugin::FrameInputs& inputs) {
     if (Result<void> ready = scene_.update(inputs, settings_.incremental); !ready.ok()) {
-        if (said_ != ready.message()) host.log(("vpl: " + ready.message()).c_str());
+        if (said_ != ready.message()) host().log(("vpl: " + ready.message()).c_str());
         said_ = ready.message();
         return {};
     }
@@ -306,10 +326,10 @@ plugin::FrameOutputs VplTechnique::addPasses(fg::FrameGraph& graph,
                             gather_.params);
     plugin::FrameOutputs outputs;
     if (inputs.terms & kIndirectOnSurfaces)
-        outputs.surfaceRadiance = addVplSurfaces(graph, inputs, buffers_, gather_);
+        outputs.onSurfaces = addVplSurfaces(graph, inputs, buffers_, gather_);
     if (inputs.terms & ~kIndirectOnSurfaces)
-        outputs.inScatter = addVplMedia(graph, inputs, buffers_, gather_);
-    gathered_ = {outputs.surfaceRadiance, outputs.inScatter};
+        outputs.inMedia = addVplMedia(graph, inputs, buffers_, gather_);
+    gathered_ = {outputs.onSurfaces, outputs.inMedia};
     if (inputs.statistics) {
         outputs.statistics = addStatistics(graph);
         outputs.statistic = kStatistics;
@@ -347,7 +367,7 @@ fg::BufferHandle VplTechnique::addStatistics(fg::FrameGraph& graph) {
         .values;
 }
 
-fg::TextureHandle VplTechnique::addPostPasses(fg::FrameGraph& graph,
+fg::TextureHandle VplTechnique::addDebugView(fg::FrameGraph& graph,
                                               const plugin::FrameInputs& inputs,
                                               fg::TextureHandle color) {
     const float radius = settings_.show == 0
@@ -358,6 +378,10 @@ fg::TextureHandle VplTechnique::addPostPasses(fg::FrameGraph& graph,
     buffers_ = {}; // of this frame alone
     gathered_ = {};
     return shown;
+}
+
+std::unique_ptr<GiTechnique> makeVpl(SharedParts& shared) {
+    return std::make_unique<VplTechnique>(shared);
 }
 
 } // namespace tyndall::volumetric_gi

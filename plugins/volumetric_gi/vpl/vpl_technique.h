@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "volumetric_gi/shared/gi_technique.h"
 #include "volumetric_gi/vpl/traced_scene.h"
 #include "volumetric_gi/vpl/vpl_gather.h"
 #include "volumetric_gi/vpl/compensation_light.h"
@@ -14,16 +15,17 @@
 
 namespace tyndall::volumetric_gi {
 
-class VplTechnique {
+class VplTechnique final : public GiTechnique {
 public:
-    [[nodiscard]] VplSettings& settings() { return settings_; }
+    using GiTechnique::GiTechnique;
+    const plugin::TechniqueInfo& info() const override;
+    plugin::SettingsTable settings() override;
     /// Light of virtual lights on surfaces and in media, as far as `inputs.terms` asks for it.
-    plugin::FrameOutputs addPasses(fg::FrameGraph& graph, const plugin::FrameInputs& inputs,
-                                   plugin::Host& host);
-
-    /// The lights in the finished picture, where settings ask for it.
-    fg::TextureHandle addPostPasses(fg::FrameGraph& graph, const plugin::FrameInputs& inputs,
-                                    fg::TextureHandle color);
+    plugin::FrameOutputs addPasses(fg::FrameGraph& graph,
+                                   const plugin::FrameInputs& inputs) override;
+    /// The virtual lights, where settings ask for it.
+    fg::TextureHandle addDebugView(fg::FrameGraph& graph, const plugin::FrameInputs& inputs,
+                                   fg::TextureHandle color) override;
 
 private:
     fg::BufferHandle addStatistics(fg::FrameGraph& graph);

@@ -1,4 +1,4 @@
-#include "volumetric_gi/octaves/octaves_pass.h"
+#include "volumetric_gi/octaves/octaves_technique.h"
 
 #include "shared/octaves.h"
 
@@ -28,11 +28,31 @@ constexpr PresetEntry kOctavesPresets[] = {
 
 } // namespace
 
-std::span<const SettingDesc> octavesSettings() { return kOctavesSettings; }
-std::span<const PresetEntry> octavesPresets() { return kOctavesPresets; }
+const plugin::TechniqueInfo& OctavesTechnique::info() const {
+    static constexpr TermSet kSets[] = {terms(Term::LVVE, Term::LXVVE)};
+    static constexpr plugin::TechniqueInfo kInfo{
+        .name = "octaves",
+        .title = "Octaves of multiple scattering",
+        .help = "Baseline: multiple scattering as reduced copies of single scattering, inside the march.",
+        .claims = kSets[0],
+        .sets = kSets,
+        .setCount = 1,
+        .media = kAllMedia,
+        .separatesMedia = 0,
+        .automatic = 1,
+        .cost = 4,
+        .errorOnSurfaces = 1,
+        .errorInMedia = 0.3f};
+    return kInfo;
+}
 
-fg::TextureHandle addOctavesPass(fg::FrameGraph& graph, const plugin::FrameInputs& inputs,
-                                 const OctavesSettings& settings) {
+plugin::SettingsTable OctavesTechnique::settings() {
+    return table(kOctavesSettings, &settings_, kOctavesPresets);
+}
+
+plugin::FrameOutputs OctavesTechnique::addPasses(fg::FrameGraph& graph,
+                                                 const plugin::FrameInputs& inputs) {
+    const OctavesSettings& settings = settings_;
     struct Data {
         ViewResources view;
         LightResources lights;
@@ -40,7 +60,8 @@ fg::TextureHandle addOctavesPass(fg::FrameGraph& graph, const plugin::FrameInput
         fg::TextureHandle depth, inScatter;
         gpu::OctavesParams params;
     };
-    return graph
+    plugin::FrameOutputs outputs;
+    outputs.inMedia = graph
         .addPass<Data>(
             "gi.octaves.march",
             [&](fg::Builder& builder, Data& data) {
@@ -77,6 +98,11 @@ fg::TextureHandle addOctavesPass(fg::FrameGraph& graph, const plugin::FrameInput
                     .dispatchOver(data.inScatter);
             })
         .inScatter;
+    return outputs;
+}
+
+std::unique_ptr<GiTechnique> makeOctaves(SharedParts& shared) {
+    return std::make_unique<OctavesTechnique>(shared);
 }
 
 } // namespace tyndall::volumetric_gi

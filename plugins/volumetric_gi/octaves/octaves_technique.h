@@ -4,9 +4,7 @@
 // optical depth and scatters with phaseFactor^i of the anisotropy; bounded when scatteringFactor ≤ extinctionFactor.
 // Roughly LVVE and LXVVE together: it knows neither surfaces nor where the light was scattered before.
 
-#include <span>
-
-#include "plugin/plugin_api.h"
+#include "volumetric_gi/shared/gi_technique.h"
 
 namespace tyndall::volumetric_gi {
 
@@ -14,11 +12,18 @@ struct OctavesSettings {
     int32_t count;
     float scatteringFactor, extinctionFactor, phaseFactor;
 };
-std::span<const SettingDesc> octavesSettings();
-std::span<const PresetEntry> octavesPresets();
 
-/// View-sized RGBA32F nits that reach the eye: the octaves 1 … count. Skipped where no medium scatters or no octave is asked for.
-fg::TextureHandle addOctavesPass(fg::FrameGraph& graph, const plugin::FrameInputs& inputs,
-                                 const OctavesSettings& settings);
+class OctavesTechnique final : public GiTechnique {
+public:
+    using GiTechnique::GiTechnique;
+    const plugin::TechniqueInfo& info() const override;
+    plugin::SettingsTable settings() override;
+    /// The octaves 1 … count. Skipped where no medium scatters or no octave is asked for. It has no paper mode of its own.
+    plugin::FrameOutputs addPasses(fg::FrameGraph& graph,
+                                   const plugin::FrameInputs& inputs) override;
+
+private:
+    OctavesSettings settings_{};
+};
 
 } // namespace tyndall::volumetric_gi

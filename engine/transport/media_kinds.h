@@ -1,0 +1,21 @@
+#pragma once
+// Kinds of media, as far as techniques tell them apart: a technique may compute a term inside some kinds alone.
+
+#include <cstdint>
+#include <string>
+
+namespace tyndall {
+
+/// A set of kinds as bits: plain data, crosses the plugin boundary.
+using MediaSet = uint32_t;
+inline constexpr MediaSet kShapeMedia = 1;    // homogeneous: everywhere, in a box, in a sphere
+inline constexpr MediaSet kHeightMedia = 2;   // exponential height fog
+inline constexpr MediaSet kGridMedia = 4;     // from files of voxels
+inline constexpr MediaSet kParticleMedia = 8; // clouds of particles
+inline constexpr uint32_t kMediaKindCount = 4;
+inline constexpr MediaSet kAllMedia = 15;
+
+/// "shapes, grids": in order; "" for none.
+std::string mediaNames(MediaSet media);
+
+} // namespace tyndall
