@@ -71,7 +71,7 @@ struct LpvLevels {
 
 struct LpvParams {
     LpvGrid grid;
-    vec4 classWeights; // of all directions of a class together
+    vec4 classWeights; // of all directions of a class together; w: 0: light ends at the first medium or surface that it meets, else 1
     LpvDirection directions[26];
 };
 

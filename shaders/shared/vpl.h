@@ -12,7 +12,7 @@ struct VplData {
     vec4 normal;   // of the facet, unit, on the side that light came from; w: roughness
     vec4 shading;  // shading normal, unit; w: weight of the dielectric's coat
     vec4 travel;   // unit, of the light that arrives; w: parameter g of the phase function
-    vec4 power;    // watts over all walks: on a surface what arrives, in a medium what is scattered
+    vec4 power;    // watts over all walks: on a surface what arrives, in a medium what is scattered; w: kVplOfSurfaces and so on
     vec4 base;     // base colour; w: metallic
 };
 
@@ -79,8 +79,14 @@ struct VplParams {
     uint lost;        // 1: lights give what the bound takes away from them, and nothing else
     float mediumClampSquared; // m²: 1/b in the content from surface to medium
     uint nearLight;           // 1: what the bound takes away and no step makes up for is in `VplNear`
-    uint padding0, padding1;
+    // Which lights count on surfaces and in media, a bit for each of kVplOfSurfaces and so on: each is the light of one term there.
+    uint surfaceTerms, mediaTerms;
 };
+
+// By the last scattering of a light's power, and by whether that was its first.
+TYNDALL_CONST uint kVplOfSurfaces = 0u, kVplOfMedia = 1u;           // LSSE, LSVE; LVSE, LVVE
+TYNDALL_CONST uint kVplLaterOfSurfaces = 2u, kVplLaterOfMedia = 3u; // LXSSE, LXSVE; LXVSE, LXVVE
+TYNDALL_CONST uint kVplAllTerms = 15u;
 
 struct VplShowParams {
     uint what;                                    // kVplShowLights and so on

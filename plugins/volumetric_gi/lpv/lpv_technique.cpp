@@ -87,7 +87,8 @@ uint64_t LpvTechnique::sourceKey(const plugin::FrameInputs& inputs, uint64_t pla
 }
 
 void LpvTechnique::addSources(fg::FrameGraph& graph, const plugin::FrameInputs& inputs,
-                              std::vector<Lattice>& lattices) {
+                              std::vector<Lattice>& lattices,
+                              const LpvSettings& settings) {
     const Bounds bounds = makeBounds(inputs.scene.boundsMinimum, inputs.scene.boundsMaximum);
     std::vector<Bounds> boxes;
     for (const Lattice& lattice : lattices)
@@ -123,7 +124,7 @@ void LpvTechnique::addSources(fg::FrameGraph& graph, const plugin::FrameInputs& 
         const Rsm map = addRsm(graph, inputs, rsm);
         for (size_t i = 0; i < lattices.size(); ++i)
             if (wants(i))
-                injections[i].deposits = addInjection(graph, inputs, settings_, map, injections[i]);
+                injections[i].deposits = addInjection(graph, inputs, settings, map, injections[i]);
     }
     for (size_t i = 0; i < lattices.size(); ++i)
         lattices[i].sources = addCollection(graph, injections[i], lattices[i].level.cells);
@@ -211,12 +212,21 @@ plugin::FrameOutputs LpvTechnique::addPasses(fg::FrameGraph& graph,
     finest_ = {};
     PlacementRequest placement = placementOf(inputs, settings_);
     if (placement.bounds.empty() || inputs.lights.lightCount == 0) return {};
+    const bool once = (inputs.terms & ~kOnce) == 0;
+    LpvSettings sources = settings_;
+    sources.reflected &= !once || (inputs.terms & kFromSurfaces) != 0;
+    sources.scattered &= inputs.media.count > 0 && (!once || (inputs.terms & kFromMedia) != 0);
+    if (!sources.reflected && !sources.scattered) return {};
     if (printed) {
         placement.most = 1;
         placement.extent = 0;
         placement.content = placement.bounds;
     }
     std::vector<LatticeLevel> levels = placeLattices(placement);
+    for (LatticeLevel& level : levels) {
+        level.params.classWeights.w = once ? 0 : 1;
+        level.key = fg::mixHash(level.key, once ? inputs.terms : 0);
+    }
     const SharedPlaces places = sharePlaces(levels);
     std::vector<Lattice> lattices(levels.size());
     for (size_t i = 0; i < levels.size(); ++i) {
@@ -224,7 +234,7 @@ plugin::FrameOutputs LpvTechnique::addPasses(fg::FrameGraph& graph,
         lattices[i].medium = addLatticeMedium(graph, inputs, levels[i]);
         lattices[i].links = addLatticeLinks(graph, inputs, levels[i]);
     }
-    addSources(graph, inputs, lattices);
+    addSources(graph, inputs, lattices, sources);
 
     const fg::BufferDesc desc{gpu::kLpvMostLevels * sizeof(gpu::LpvControl)};
     fg::BufferHandle control = graph.persistentBuffer("gi.lpv.control", desc).handle;

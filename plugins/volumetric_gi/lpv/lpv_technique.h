@@ -31,7 +31,7 @@ public:
 
 private:
     void addSources(fg::FrameGraph& graph, const plugin::FrameInputs& inputs,
-                    std::vector<Lattice>& lattices);
+                    std::vector<Lattice>& lattices, const LpvSettings& settings);
     LatticeLight addLight(fg::FrameGraph& graph, const plugin::FrameInputs& inputs,
                           std::vector<Lattice>& lattices, const SharedPlaces& places,
                           fg::BufferHandle& control);

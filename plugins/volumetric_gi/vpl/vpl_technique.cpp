@@ -81,6 +81,14 @@ double meanDistanceOf(const std::vector<dvec3>& lights, const Bounds& content, d
     return std::cbrt(extent.x * extent.y * extent.z / (count[i] * times));
 }
 
+/// Which virtual lights count at a receiver: the terms LSrE, LVrE, LXSrE and LXVrE in the order of kVplOfSurfaces and so on.
+uint32_t termBits(TermSet given, const Term (&terms)[4]) {
+    uint32_t bits = 0;
+    for (uint32_t i = 0; i < 4; ++i)
+        if (given & bit(terms[i])) bits |= 1u << i;
+    return bits;
+}
+
 bool converges(const plugin::FrameInputs& inputs) {
     return (inputs.view.data.flags & gpu::kViewConverge) != 0;
 }
@@ -276,6 +284,12 @@ VplGather VplTechnique::gather(const plugin::FrameInputs& inputs) const {
     if (radius > 0) params.content = vec4(vec3(content.centre()), squared(1 / radius));
     params.lost = settings_.show == int32_t(gpu::kVplShowLost) ? 1 : 0;
     params.compensation = params.lost != 0 ? gpu::kVplClamped : uint32_t(settings_.compensation);
+    params.surfaceTerms =
+        termBits(inputs.terms, {Term::LSSE, Term::LVSE, Term::LXSSE, Term::LXVSE});
+    params.mediaTerms = termBits(inputs.terms, {Term::LSVE, Term::LVVE, Term::LXSVE, Term::LXVVE});
+    // The closed form takes all light around a point for one.
+    if (params.compensation == gpu::kVplClosedForm && params.mediaTerms != gpu::kVplAllTerms)
+        params.compensation = gpu::kVplTraced;
     params.lightsOfScene = inputs.lights.lightCount;
     params.samples = uint32_t(settings_.samples);
     if (!grids.empty() && inputs.media.count > 0) {

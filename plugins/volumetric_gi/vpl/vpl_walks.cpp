@@ -10,7 +10,8 @@ gpu::VplData pack(const tracing::WalkVertex& vertex, double share) {
     gpu::VplData light{};
     light.position = vec4(vec3(vertex.position), -1);
     light.travel = vec4(vec3(vertex.travel), 0);
-    light.power = vec4(vec3(vertex.power * share), 0);
+    const uint32_t first = vertex.scatterings == 1 ? gpu::kVplOfSurfaces : gpu::kVplLaterOfSurfaces;
+    light.power = vec4(vec3(vertex.power * share), float(first + (vertex.medium ? 1 : 0)));
     if (vertex.medium) {
         light.position.w = float(int(vertex.medium->phase));
         light.travel.w = float(vertex.medium->anisotropy);

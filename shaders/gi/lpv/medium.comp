@@ -33,12 +33,16 @@ void main() {
         }
     }
 #endif
+    float cosine = meanOf(forward) / max(meanOf(scattering), 1e-30);
+    medium[kLpvTrueDepth * cells + self] = vec4(extinction * params.grid.lowest.w, cosine);
+    medium[kLpvTrueAlbedo * cells + self] = vec4(clamp(scattering / max(extinction, vec3(1e-30)), 0.0, 1.0), 0.0);
+    if (params.classWeights.w == 0.0) { // what is scattered is lost, forwards, too
+        scattering = vec3(0.0);
+        forward = vec3(0.0);
+    }
     vec3 transport = max(extinction - forward, vec3(0.0));
     vec3 depth = transport * params.grid.lowest.w;
     for (uint c = 0u; c < kLpvClasses; ++c) medium[(kLpvPassed + c) * cells + self] = vec4(exp(-depth * sqrt(float(c + 1u))), 0.0);
     medium[kLpvDepth * cells + self] = vec4(depth, 0.0);
     medium[kLpvAlbedo * cells + self] = vec4(clamp((scattering - forward) / max(transport, vec3(1e-30)), 0.0, 1.0), 0.0);
-    float cosine = meanOf(forward) / max(meanOf(scattering), 1e-30);
-    medium[kLpvTrueDepth * cells + self] = vec4(extinction * params.grid.lowest.w, cosine);
-    medium[kLpvTrueAlbedo * cells + self] = vec4(clamp(scattering / max(extinction, vec3(1e-30)), 0.0, 1.0), 0.0);
 }

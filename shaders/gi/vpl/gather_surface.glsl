@@ -41,7 +41,8 @@ void addLightFrom(inout SurfaceLight sum, uint light, Receiver r) {
 SurfaceLight gatherSurface(Receiver r, uint number, uint stride, uvec2 pixel) {
     SurfaceLight sum = kDark;
     for (uint walk = number; walk < vpl.walkCount; walk += stride)
-        for (uint light = vplWalks[walk]; light < vplWalks[walk + 1u]; ++light) addLightFrom(sum, light, r);
+        for (uint light = vplWalks[walk]; light < vplWalks[walk + 1u]; ++light)
+            if (vplCounts(light, vpl.surfaceTerms)) addLightFrom(sum, light, r);
     sum.diffuse *= float(stride);
     sum.specular *= float(stride);
     sum.grazing *= float(stride);
@@ -61,8 +62,8 @@ SurfaceLight gatherSurface(Receiver r, uint number, uint stride, uvec2 pixel) {
         vec3 near = vec3(0.0);
         if (drawNearPoint(r.position, direction, reach, noise.w, t, there)) {
             uint number = uint(u.z * float(vpl.classes));
-            near = walksInMedium(number, r.position + direction * t, direction, there, relaxedBound(widest)); // of a grazing direction's reach it would be no bound at all
-            near += segmentInScatter(Ray(r.position, direction), there, vpl.lightsOfScene, noise.xyz, number);
+            near = walksInMedium(number, r.position + direction * t, direction, there, relaxedBound(widest), vplTermsOneStepOn(vpl.surfaceTerms)); // of a grazing direction's reach it would be no bound at all
+            if ((vpl.surfaceTerms & (1u << kVplOfMedia)) != 0u) near += segmentInScatter(Ray(r.position, direction), there, vpl.lightsOfScene, noise.xyz, number);
             near *= nearPointWeight(r.position, direction, reach, t);
         }
         addLight(sum, r, direction, near * (kPi * cosine / max(z, 1e-3)));

@@ -26,6 +26,8 @@ float vplInverseSquare(float squared, float cosines, float clampSquared) {
     return vpl.lost == 0u ? held : min(1.0 / max(squared, 1e-30), kMostLost * held) - held;
 }
 
+bool vplCounts(uint light, uint terms) { return (terms & (1u << uint(vplLights[light].power.w))) != 0u; }
+
 /// Watts per steradian towards `direction` (unit); on a surface with the cosine there.
 vec3 vplIntensity(uint light, vec3 direction) {
     float kind = vplLights[light].position.w;

@@ -24,8 +24,8 @@ vec3 lightInMedium(uint light, vec3 position, vec3 direction, Segment s, float c
     return scatteredLight(s, dot(towards, direction), depth) * intensity * perArea;
 }
 
-/// One loop over all lights of the class's walks: invocations side by side gather other classes, and would wait for the longest of their walks each time.
-vec3 walksInMedium(uint number, vec3 position, vec3 direction, Segment s, float clampSquared) {
+/// Of those lights that count towards `terms`. One loop over all lights of the class's walks: invocations side by side gather other classes, and would wait for the longest of their walks each time.
+vec3 walksInMedium(uint number, vec3 position, vec3 direction, Segment s, float clampSquared, uint terms) {
     vec3 sum = vec3(0.0);
     uint walk = number % vpl.classes;
     uint light = 0u;
@@ -36,10 +36,14 @@ vec3 walksInMedium(uint number, vec3 position, vec3 direction, Segment s, float 
             end = vplWalks[walk + 1u];
             walk += vpl.classes;
         }
-        sum += lightInMedium(light++, position, direction, s, clampSquared);
+        if (vplCounts(light, terms)) sum += lightInMedium(light, position, direction, s, clampSquared);
+        ++light;
     }
     return sum * float(vpl.classes);
 }
+
+/// The lights that count at a point from which media scatter light on to a receiver for whom `terms` count.
+uint vplTermsOneStepOn(uint terms) { return (terms & (1u << kVplLaterOfMedia)) != 0u ? kVplAllTerms : 0u; }
 
 /// A segment without length at a point: scattering coefficients in place of their integrals.
 Segment pointSegment(Ray ray, float at, float scale) {

@@ -59,9 +59,10 @@ vec3 gatherAt(uint number, uint other, vec3 position, vec3 direction, Segment s,
     Segment here = s;
     float bound = clampSquared;
     for (uint step = 0u;; ++step) {
-        vec3 gathered = walksInMedium(step == 0u ? number : other, at, back.direction, here, bound);
+        uint terms = step == 0u ? vpl.mediaTerms : vplTermsOneStepOn(vpl.mediaTerms);
+        vec3 gathered = walksInMedium(step == 0u ? number : other, at, back.direction, here, bound, terms);
 #if COMPENSATION == 2
-        if (step > 0u) gathered += segmentInScatter(back, here, vpl.lightsOfScene, u.xyz, number);
+        if (step > 0u && (vpl.mediaTerms & (1u << kVplOfMedia)) != 0u) gathered += segmentInScatter(back, here, vpl.lightsOfScene, u.xyz, number);
         light += weight * gathered;
         if (step == vpl.compensation / kVplTraced) break;
         float overDensity;
