@@ -21,13 +21,14 @@ struct Define {
 };
 
 enum class CullMode : uint32_t { None = 0, Back = 1, Front = 2 };
+/// In targets of 32-bit floats too, where Add is exact for whole numbers below 2^24.
 enum class BlendMode : uint32_t { Replace = 0, Premultiplied = 1, Add = 2 };
 enum class DepthMode : uint32_t { Off = 0, TestAndWrite = 1, Test = 2, TestEqual = 3 };
 enum class CompareMode : uint32_t {
     Greater = 0,
     Less = 1
 }; // Greater: reversed z, of cameras and shadow maps; Less: plain z
-enum class Topology : uint32_t { Triangles = 0, Lines = 1, Points = 2 };
+enum class Topology : uint32_t { Triangles = 0, Lines = 1, Points = 2, Patches = 3 };
 
 /// Fixed-function state of one raster command.
 struct RasterState {
@@ -35,7 +36,8 @@ struct RasterState {
     BlendMode blend = BlendMode::Replace;
     DepthMode depth = DepthMode::Off;
     CompareMode compare = CompareMode::Greater;
-    Topology topology = Topology::Triangles;
+    Topology topology = Topology::Triangles; // Patches where a program tessellates, else never
+    uint32_t patchVertices = 3;              // of one patch
     bool frontFaceClockwise = false; // true for mirrored transforms
     bool depthClamp = false;
     float slopeBias = 0, constantBias = 0; // glPolygonOffset factor and units
@@ -48,6 +50,22 @@ struct Target {
     int32_t mip = 0;
 };
 
+/// The stages of a raster program, in the pipeline's order, which is also that of their line in shaders/variants.txt.
+struct RasterShaders {
+    const char* vertex = nullptr;
+    const char* tessControl = nullptr; // both or neither
+    const char* tessEvaluation = nullptr;
+    const char* fragment = nullptr; // none: only depth is drawn; without targets nothing is
+};
+
+/// What indirect commands read from a buffer (OpenGL 4.5, sections 19 and 10.4).
+struct DispatchArguments {
+    uint32_t groupsX = 0, groupsY = 1, groupsZ = 1;
+};
+struct DrawArguments {
+    uint32_t vertexCount = 0, instanceCount = 1, firstVertex = 0, baseInstance = 0;
+};
+
 class ComputeCommand;
 class RasterCommand;
 
@@ -57,8 +75,8 @@ class PassContext {
 public:
     // The plain interface; pass authors use the command objects below.
     virtual void beginCompute(const char* shader, const Define* defines, uint32_t defineCount) = 0;
-    virtual void beginRaster(const char* vertexShader, const char* fragmentShader,
-                             const Define* defines, uint32_t defineCount) = 0;
+    virtual void beginRaster(const RasterShaders& shaders, const Define* defines,
+                             uint32_t defineCount) = 0;
     virtual void bindTexture(const char* name, TextureHandle handle, int32_t mip,
                              int32_t layer) = 0;
     virtual void bindBuffer(const char* name, BufferHandle handle) = 0;
@@ -75,7 +93,9 @@ public:
     virtual void targets(const Target* colors, uint32_t colorCount, const Target* depth) = 0;
     virtual void viewport(int32_t x, int32_t y, int32_t width, int32_t height) = 0;
     virtual void rasterState(const RasterState& state) = 0;
+    virtual void capture(BufferHandle into, BufferHandle count, uint64_t countOffset) = 0;
     virtual void draw(uint32_t vertexCount, uint32_t instanceCount, uint32_t firstVertex) = 0;
+    virtual void drawIndirect(BufferHandle arguments, uint64_t byteOffset) = 0;
     virtual void drawGeometry(StaticGeometry geometry, uint32_t firstIndex, uint32_t indexCount,
                               uint32_t instanceCount, uint32_t baseInstance) = 0;
     virtual void clearTexture(TextureHandle handle, const float rgba[4]) = 0;
@@ -94,6 +114,9 @@ public:
 
     template <size_t N> ComputeCommand compute(const char* shader, const Define (&defines)[N]);
     ComputeCommand compute(const char* shader);
+    template <size_t N>
+    RasterCommand raster(const RasterShaders& shaders, const Define (&defines)[N]);
+    RasterCommand raster(const RasterShaders& shaders);
     template <size_t N>
     RasterCommand raster(const char* vertexShader, const char* fragmentShader,
                          const Define (&defines)[N]);
@@ -157,6 +180,7 @@ public:
         const TextureDesc d = context_->desc(handle);
         context_->dispatchThreads(uint32_t(d.width), uint32_t(d.height), uint32_t(d.depth));
     }
+    /// With DispatchArguments that a pass before this one, or this pass before a barrier, has written.
     void dispatchIndirect(BufferHandle arguments, uint64_t byteOffset = 0) {
         context_->dispatchIndirect(arguments, byteOffset);
     }
@@ -182,8 +206,20 @@ public:
         context_->rasterState(s);
         return *this;
     }
+    /// What the last stage before rasterisation declares with `layout(xfb_offset = …) out` goes to `into`: tightly from its first byte on,
+    /// draw after draw of this command, in the order of their primitives. What does not fit is dropped, by whole primitives.
+    /// `count`, if given, gets the number of points, lines or triangles that were captured, as a uint at byte `countOffset`, when the
+    /// command is over: with the next command, clear, copy, upload or barrier, or with the pass. Both are written as Access::Capture.
+    RasterCommand& capture(BufferHandle into, BufferHandle count = {}, uint64_t countOffset = 0) {
+        context_->capture(into, count, countOffset);
+        return *this;
+    }
     void draw(uint32_t vertices, uint32_t instances = 1, uint32_t firstVertex = 0) {
         context_->draw(vertices, instances, firstVertex);
+    }
+    /// With DrawArguments that a pass before this one, or this pass before a barrier, has written.
+    void drawIndirect(BufferHandle arguments, uint64_t byteOffset = 0) {
+        context_->drawIndirect(arguments, byteOffset);
     }
     void drawGeometry(StaticGeometry geometry, uint32_t firstIndex, uint32_t indexCount,
                       uint32_t instances = 1, uint32_t baseInstance = 0) {
@@ -201,14 +237,21 @@ inline ComputeCommand PassContext::compute(const char* shader) {
     return ComputeCommand(*this);
 }
 template <size_t N>
-RasterCommand PassContext::raster(const char* vertexShader, const char* fragmentShader,
-                                  const Define (&defines)[N]) {
-    beginRaster(vertexShader, fragmentShader, defines, uint32_t(N));
+RasterCommand PassContext::raster(const RasterShaders& shaders, const Define (&defines)[N]) {
+    beginRaster(shaders, defines, uint32_t(N));
     return RasterCommand(*this);
 }
-inline RasterCommand PassContext::raster(const char* vertexShader, const char* fragmentShader) {
-    beginRaster(vertexShader, fragmentShader, nullptr, 0);
+inline RasterCommand PassContext::raster(const RasterShaders& shaders) {
+    beginRaster(shaders, nullptr, 0);
     return RasterCommand(*this);
+}
+template <size_t N>
+RasterCommand PassContext::raster(const char* vertexShader, const char* fragmentShader,
+                                  const Define (&defines)[N]) {
+    return raster({.vertex = vertexShader, .fragment = fragmentShader}, defines);
+}
+inline RasterCommand PassContext::raster(const char* vertexShader, const char* fragmentShader) {
+    return raster({.vertex = vertexShader, .fragment = fragmentShader});
 }
 
 } // namespace tyndall::fg
