@@ -38,7 +38,7 @@ struct RasterState {
     CompareMode compare = CompareMode::Greater;
     Topology topology = Topology::Triangles; // Patches where a program tessellates, else never
     uint32_t patchVertices = 3;              // of one patch
-    bool frontFaceClockwise = false; // true for mirrored transforms
+    bool frontFaceClockwise = false;         // true for mirrored transforms
     bool depthClamp = false;
     float slopeBias = 0, constantBias = 0; // glPolygonOffset factor and units
 };

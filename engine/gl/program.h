@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -74,8 +75,8 @@ public:
     [[nodiscard]] bool isCompute() const { return localSize_.x > 0; }
     /// False where the program ends before rasterisation, or leaves only depth.
     [[nodiscard]] bool hasFragments() const { return hasFragments_; }
-    /// What its tessellation makes of patches: GL_POINTS, GL_LINES or GL_TRIANGLES; GL_NONE where it has none.
-    [[nodiscard]] GLenum tessellatesTo() const { return tessellatesTo_; }
+    /// What its tessellation makes of patches: GL_POINTS, GL_LINES or GL_TRIANGLES; nothing where it has none.
+    [[nodiscard]] std::optional<GLenum> tessellatesTo() const { return tessellatesTo_; }
     /// Bytes that transform feedback captures of a vertex, as the shader's xfb qualifiers say; 0: it captures nothing.
     [[nodiscard]] int captureStride() const { return captureStride_; }
 
@@ -102,7 +103,7 @@ private:
     std::string warnings_;
     uvec3 localSize_{0};
     bool hasFragments_ = false;
-    GLenum tessellatesTo_ = GL_NONE;
+    std::optional<GLenum> tessellatesTo_;
     int captureStride_ = 0; // bytes
     std::vector<ProgramResource> resources_;
     std::vector<uint64_t> identifiers_; // hashes, sorted

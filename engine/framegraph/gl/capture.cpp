@@ -16,9 +16,9 @@ void Capture::aim(const gl::Buffer& into, uint64_t bytes, const gl::Buffer* coun
 
 void Capture::begin(GLenum primitives) {
     CHECK(
-        primitives_ == GL_NONE || primitives_ == primitives,
+        !primitives_ || primitives_ == primitives,
         "one capture takes either points, lines or triangles: capture() again before another kind is drawn");
-    if (primitives_ != GL_NONE) return;
+    if (primitives_) return;
     primitives_ = primitives;
     if (count_ != 0) {
         if (!query_) {
@@ -34,7 +34,7 @@ void Capture::begin(GLenum primitives) {
 
 void Capture::end() {
     if (into_ == 0) return;
-    if (primitives_ != GL_NONE) {
+    if (primitives_) {
         glEndTransformFeedback();
         if (count_ != 0) {
             glEndQuery(GL_TRANSFORM_FEEDBACK_PRIMITIVES_WRITTEN);
@@ -46,7 +46,7 @@ void Capture::end() {
     }
     glBindBufferBase(GL_TRANSFORM_FEEDBACK_BUFFER, 0, 0);
     into_ = count_ = 0;
-    primitives_ = GL_NONE;
+    primitives_.reset();
 }
 
 } // namespace tyndall::fg

@@ -2,6 +2,7 @@
 // Transform feedback of one raster command: its draws append to a buffer, and their number lands in another without a read-back.
 
 #include <cstdint>
+#include <optional>
 
 #include "gl/buffer.h"
 #include "gl/object.h"
@@ -22,7 +23,7 @@ private:
     gl::Object query_; // made when first needed
     GLuint into_ = 0, count_ = 0;
     uint64_t countOffset_ = 0;
-    GLenum primitives_ = GL_NONE; // GL_NONE: no draw yet
+    std::optional<GLenum> primitives_; // nothing: no draw yet
 };
 
 } // namespace tyndall::fg

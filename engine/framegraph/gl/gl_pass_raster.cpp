@@ -124,13 +124,12 @@ void GlPassContext::capture(BufferHandle into, BufferHandle count, uint64_t coun
 }
 
 void GlPassContext::beginCapture() {
-    const GLenum tessellated = program_->tessellatesTo();
-    capture_.begin(tessellated != GL_NONE ? tessellated : glTopology(state_.topology));
+    capture_.begin(program_->tessellatesTo().value_or(glTopology(state_.topology)));
 }
 
 void GlPassContext::checkTopology() const {
     const bool patches = state_.topology == Topology::Patches;
-    const bool tessellates = program_->tessellatesTo() != GL_NONE;
+    const bool tessellates = program_->tessellatesTo().has_value();
     CHECK(patches || !tessellates,
           fmt::format(
               "pass '{}' draws with '{}', which tessellates: RasterState::topology must be Patches",
