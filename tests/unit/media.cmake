@@ -11,4 +11,7 @@ target_compile_definitions(tyndall_volume_test_support PRIVATE NANOVDB_USE_ZIP N
 target_link_libraries(tyndall_volume_test_support PRIVATE tyndall_warnings ${OPENVDB_LIBRARY} ${BLOSC_LIBRARY}
   PkgConfig::IMATH ZLIB::ZLIB TBB::tbb Tyndall::core)
 
+# It runs once and takes minutes to optimise.
+set_source_files_properties(media_volume_files.cpp PROPERTIES COMPILE_OPTIONS -O0)
+
 tyndall_test(unit_media_import LABEL unit SOURCES media_import_test.cpp DEPENDS Tyndall::media tyndall_volume_test_support)
