@@ -18,7 +18,7 @@ struct Scene;
 namespace tyndall::plugin {
 
 /// Raised by one whenever anything that crosses the boundary changes its meaning or layout.
-inline constexpr uint32_t kAbiVersion = 4;
+inline constexpr uint32_t kAbiVersion = 5;
 
 /// One technique that a plugin offers: the name that `--gi` takes, and the terms that it computes.
 struct TechniqueInfo {
