@@ -67,7 +67,6 @@ Outcome App::openWindow() {
     if (!window.ok())
         return failed(window.message() + "; 'tyndall capture' renders without a display");
     window_ = std::move(*window);
-
     return {};
 }
 

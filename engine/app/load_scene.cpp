@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include "app/interrupt.h"
 #include "core/log.h"
 #include "core/settings.h"
 

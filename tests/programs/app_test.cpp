@@ -90,7 +90,8 @@ TEST(App, TheTechniqueIsASettingLikeAnyOther) {
         return std::pair(recorder.result().plan.technique, changed);
     };
     std::string scene = readFile(options.scene).value();
-    scene.insert(scene.find("\"camera\": \"eye\""), "\"settings\": {\"gi.technique\": \"none\"},\n  ");
+    scene.insert(scene.find("\"camera\": \"eye\""),
+                 "\"settings\": {\"gi.technique\": \"none\"},\n  ");
     std::ofstream(options.scene) << scene;
     EXPECT_EQ(technique({}, "").first, "none") << "the scene's word";
     const auto [bySet, changed] = technique({"gi.technique=octaves"}, "");

@@ -94,7 +94,8 @@ TEST(Job, WhatTheWorkThrowsComesOutOfTake) {
 /// Three nodes, each of which the reader reports before it reads it.
 std::string writeGltf() {
     const std::string path = (scratchDir("app-load") / "three.gltf").string();
-    std::ofstream(path) << R"({"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0, 1, 2]}],
+    std::ofstream(path)
+        << R"({"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0, 1, 2]}],
         "nodes": [{"name": "a"}, {"name": "b"}, {"name": "c"}]})";
     return path;
 }
@@ -103,7 +104,8 @@ TEST(SceneLoad, ACancelledOneStopsAtOnceAndLeavesTheSceneAsItWas) {
     const std::string path = writeGltf();
     int steps = 0, stepsUntilTheEnd = 0;
     Scene scene;
-    JobControl whole([&](const JobProgress& progress) { stepsUntilTheEnd += !progress.sentence.empty(); });
+    JobControl whole(
+        [&](const JobProgress& progress) { stepsUntilTheEnd += !progress.sentence.empty(); });
     ASSERT_TRUE(loadScene(path, whole, scene).ok());
     ASSERT_GT(stepsUntilTheEnd, 1);
 

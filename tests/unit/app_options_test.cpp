@@ -24,8 +24,9 @@ Result<void> understandReference(const std::vector<std::string>& words, Referenc
 }
 
 TEST(Options, RendererAndReferenceReadTheSameViewFromTheSameWords) {
-    const std::vector<std::string> words{"a.scene.json", "--size", "64x48",  "--camera", "eye",
-                                         "--time",       "2.5",    "--terms", "LE,LVE",  "--seed", "7"};
+    const std::vector<std::string> words{"a.scene.json", "--size", "64x48", "--camera",
+                                         "eye",          "--time", "2.5",   "--terms",
+                                         "LE,LVE",       "--seed", "7"};
     ReferenceOptions reference;
     reference.goals.spp = 1;
     reference::RenderSettings settings;
@@ -56,8 +57,8 @@ TEST(Options, ATimeWithoutAGoalIsRefusedByTheReferenceAndNamesTheBudget) {
     const Result<void> refused = understandReference({"a.gltf", "--time", "30"}, meant, settings);
     ASSERT_FALSE(refused.ok());
     EXPECT_THAT(refused.message(), HasSubstr("--seconds"));
-    for (const ReferenceGoals& goals : {ReferenceGoals{4, 0, 0}, ReferenceGoals{0, 4, 0},
-                                        ReferenceGoals{0, 0, 0.1}}) {
+    for (const ReferenceGoals& goals :
+         {ReferenceGoals{4, 0, 0}, ReferenceGoals{0, 4, 0}, ReferenceGoals{0, 0, 0.1}}) {
         ReferenceOptions options;
         options.goals = goals;
         EXPECT_TRUE(understandReference({"a.gltf", "--time", "30"}, options, settings).ok());
