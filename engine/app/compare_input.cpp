@@ -1,4 +1,4 @@
-#include "programs/compare_input.h"
+#include "app/compare_input.h"
 
 #include <algorithm>
 #include <cctype>

@@ -1,12 +1,11 @@
 #pragma once
-// The command line of `tyndall capture`.
+// What a capture is asked for.
 
-#include <cstdint>
-#include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
-#include "programs/render_options.h"
+#include "app/options.h"
 
 namespace tyndall {
 
@@ -28,7 +27,6 @@ struct CaptureOptions {
     [[nodiscard]] bool hasAov(std::string_view name) const;
 };
 
-void addCaptureOptions(CLI::App& command, CaptureOptions& options);
 /// What can be said before any work: endings, folders, combinations. Errors name the option.
 Result<void> checkCaptureOptions(const CaptureOptions& options);
 

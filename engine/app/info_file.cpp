@@ -1,4 +1,4 @@
-#include "programs/info_file.h"
+#include "app/info_file.h"
 
 #include <algorithm>
 #include <cctype>
@@ -11,7 +11,6 @@
 #include "core/image.h"
 #include "core/image_metrics.h"
 #include "media/grid_import.h"
-#include "programs/interrupt.h"
 #include "scene/scene_file.h"
 
 namespace tyndall {
@@ -185,8 +184,9 @@ std::string sceneLines(const Scene& scene) {
     return text;
 }
 
-Result<std::string> describeScene(const fs::path& path, const std::string& extension) {
-    const LoadOptions options{[](float, const std::string&) { return !interrupted(); }};
+Result<std::string> describeScene(const fs::path& path, const std::string& extension,
+                                  const JobControl& job) {
+    const LoadOptions options{[&](float, const std::string&) { return !job.cancelled(); }};
     const Result<LoadedScene> loaded = loadScene(path, options);
     if (!loaded.ok()) return loaded.error();
     std::string text =
@@ -200,13 +200,13 @@ Result<std::string> describeScene(const fs::path& path, const std::string& exten
 
 } // namespace
 
-Result<std::string> describeFile(const fs::path& path) {
+Result<std::string> describeFile(const fs::path& path, const JobControl& job) {
     const std::string extension = lowerExtension(path);
     if (extension == ".vdb" || extension == ".nvdb") return describeGrids(path);
     if (extension == ".exr") return describeExr(path);
     if (extension == ".hdr") return describeHdr(path);
     if (extension == ".json" || extension == ".gltf" || extension == ".glb")
-        return describeScene(path, extension);
+        return describeScene(path, extension, job);
     return Error{fmt::format(
         "'{}' is of no kind that is understood: scene files (.json), .gltf, .glb, .vdb, .nvdb, .exr and .hdr are",
         path.string())};

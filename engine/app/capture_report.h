@@ -1,6 +1,6 @@
 #pragma once
-// The report of `tyndall capture`: what was rendered, by whom, and what it took. Plain data, filled while the renderer lives
-// and written after it is gone, since what it leaks belongs into it.
+// What was rendered, by whom, and what it took. Plain data, filled while the renderer lives and written after it is gone, since what it
+// leaks belongs into it.
 
 #include <cstdint>
 #include <map>

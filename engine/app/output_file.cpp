@@ -1,4 +1,4 @@
-#include "programs/output_file.h"
+#include "app/output_file.h"
 
 #include <filesystem>
 

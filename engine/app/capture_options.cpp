@@ -1,12 +1,11 @@
-#include "programs/capture_options.h"
+#include "app/capture_options.h"
 
 #include <algorithm>
 #include <array>
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
-#include "programs/output_file.h"
+#include "app/output_file.h"
 
 namespace tyndall {
 namespace {
@@ -46,41 +45,6 @@ std::string CaptureOptions::outputOfFrame(int frame) const {
     if (number.length == 0) return output;
     return fmt::format("{}{:0{}}{}", output.substr(0, number.at), frame, number.width,
                        output.substr(number.at + number.length));
-}
-
-void addCaptureOptions(CLI::App& command, CaptureOptions& options) {
-    addRenderOptions(command, options.render);
-    command
-        .add_option("-o,--output", options.output,
-                    "The picture: .exr (linear) or .png (exposed, tone-mapped)")
-        ->type_name("OUT")
-        ->required();
-    command
-        .add_option("--frames", options.frames,
-                    "Frames to render; the last is written, or each with %04d in OUT (1)")
-        ->type_name("N")
-        ->check(CLI::Range(1, 1000000));
-    command.add_option("--time-step", options.timeStep, "Seconds from frame to frame (1/60)")
-        ->type_name("SECONDS");
-    command.add_flag("--converge", options.converge,
-                     "Average frames of the still scene until the noise is gone; --frames caps it");
-    command
-        .add_option(
-            "--aov", options.aovs,
-            "More layers for an EXR, comma-separated: depth, normal, albedo, transmittance, terms")
-        ->type_name("LIST")
-        ->delimiter(',')
-        ->allow_extra_args(false);
-    command.add_flag("--half", options.half, "Write the EXR in 16-bit instead of 32-bit floats");
-    command.add_option("--report", options.report, "Write what it took and what was done as JSON")
-        ->type_name("FILE.json");
-    command.add_option("--trace", options.trace, "Write Chrome trace events, for ui.perfetto.dev")
-        ->type_name("FILE.json");
-    command.add_option("--max-ms", options.maxMs, "Fail when the median frame takes longer")
-        ->type_name("X")
-        ->check(CLI::PositiveNumber);
-    command.add_flag("--fail-on-nonfinite", options.failOnNonFinite,
-                     "Fail when a pixel is not finite");
 }
 
 Result<void> checkCaptureOptions(const CaptureOptions& options) {

@@ -1,9 +1,8 @@
-#include "programs/render_options.h"
+#include "app/options.h"
 
 #include <charconv>
 #include <cmath>
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 namespace tyndall {
@@ -41,64 +40,12 @@ std::vector<fs::path> pluginFolders() {
             (program / "../lib/plugins").lexically_normal()};
 }
 
-void addTechniqueOptions(CLI::App& command, RenderOptions& options) {
-    command
-        .add_option("--gi", options.gi,
-                    "Technique for indirect light: auto, none, a name, or TERM=NAME,... (auto)")
-        ->type_name("NAME");
-    command
-        .add_option("--terms", options.terms,
-                    "Transport terms to render, comma-separated: LE,LSE,LVE ... (all)")
-        ->type_name("LIST");
-    command.add_option("--quality", options.quality, "Preset: low, medium, high or ultra")
-        ->type_name("NAME");
-    command
-        .add_option("--set", options.assignments,
-                    "Any setting, repeatable; 'tyndall info --settings' lists them")
-        ->type_name("KEY=VALUE")
-        ->allow_extra_args(false);
-    command
-        .add_option("--plugin", options.plugins,
-                    "A shared-library plugin, by name or file, repeatable")
-        ->type_name("PLUGIN")
-        ->allow_extra_args(false);
-    command.add_option("--seed", options.seed, "Seed of everything random (0)")->type_name("N");
-}
-
-void addRenderOptions(CLI::App& command, RenderOptions& options) {
-    command.add_option("SCENE", options.scene, "A scene file, or a .gltf, .glb, .vdb or .nvdb")
-        ->required();
-    command.add_option("--size", options.size, "Width and height in pixels (1280x720)")
-        ->type_name("WxH");
-    command
-        .add_option("--backend", options.backend,
-                    "How to get an OpenGL context: auto, egl or osmesa (auto)")
-        ->type_name("NAME");
-    command
-        .add_option("--device", options.device,
-                    "The EGL device to render on; 'tyndall info' lists them")
-        ->type_name("N");
-    addTechniqueOptions(command, options);
-    command
-        .add_option("--camera", options.camera,
-                    "The camera to look through, by node name (the scene's own)")
-        ->type_name("NAME");
-    command
-        .add_option(
-            "--pose", options.pose,
-            "Put the camera there instead: x,y,z,qx,qy,qz,qw in metres and as a quaternion, perhaps ,yfov in radians")
-        ->type_name("NUMBERS")
-        ->allow_extra_args(false);
-    command.add_option("--time", options.time, "Where the scene's clock starts (0)")
-        ->type_name("SECONDS");
-}
-
-Result<void> parseSize(const std::string& text, int& width, int& height) {
+Result<void> parseSize(const char* option, const std::string& text, int& width, int& height) {
     const size_t middle = text.find('x');
     if (middle != std::string::npos && parseSide(std::string_view(text).substr(0, middle), width) &&
         parseSide(std::string_view(text).substr(middle + 1), height))
         return {};
-    return Error{fmt::format("--size {}: it takes WIDTHxHEIGHT, each 1 to {}, such as 1280x720",
+    return Error{fmt::format("{} {}: it takes WIDTHxHEIGHT, each 1 to {}, such as 1280x720", option,
                              text, kLargestSide)};
 }
 
@@ -142,18 +89,30 @@ std::string poseText(const PoseOption& pose) {
     return pose.yfov ? fmt::format("{},{}", text, *pose.yfov) : text;
 }
 
+Result<ViewPlan> understandView(const ViewOptions& options) {
+    ViewPlan plan;
+    if (Result<void> size = parseSize("--size", options.size, plan.width, plan.height); !size.ok())
+        return size.error();
+    if (!std::isfinite(options.time))
+        return Error{fmt::format(
+            "--time {}: it takes a finite number of seconds of the scene's clock", options.time)};
+    if (options.terms.empty()) return plan;
+    const Result<TermSet> terms = parseTerms(options.terms);
+    if (!terms.ok()) return Error{"--terms " + options.terms + ": " + terms.message()};
+    plan.terms = *terms;
+    return plan;
+}
+
 Result<RenderPlan> understand(const RenderOptions& options) {
     RenderPlan plan;
-    if (Result<void> size = parseSize(options.size, plan.width, plan.height); !size.ok())
-        return size.error();
+    const Result<ViewPlan> view = understandView(options);
+    if (!view.ok()) return view.error();
+    static_cast<ViewPlan&>(plan) = *view;
+    if (options.seed > UINT32_MAX) // more than shaders take; the reference does
+        return Error{fmt::format("--seed {}: it takes 0 to {}", options.seed, UINT32_MAX)};
     const Result<gl::Backend> backend = gl::parseBackend(options.backend);
     if (!backend.ok()) return Error{"--backend " + options.backend + ": " + backend.message()};
     plan.backend = *backend;
-    if (!options.terms.empty()) {
-        const Result<TermSet> terms = parseTerms(options.terms);
-        if (!terms.ok()) return Error{"--terms " + options.terms + ": " + terms.message()};
-        plan.terms = *terms;
-    }
     if (!options.quality.empty()) {
         const Result<Quality> quality = parseQuality(options.quality);
         if (!quality.ok()) return Error{"--quality: " + quality.message()};

@@ -1,4 +1,4 @@
-#include "programs/capture_report.h"
+#include "app/capture_report.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,21 +1,23 @@
-#include "programs/load_scene.h"
+#include "app/load_scene.h"
 
 #include <fmt/format.h>
 
 #include "core/log.h"
 #include "core/settings.h"
-#include "programs/interrupt.h"
 
 namespace tyndall {
 
-Outcome loadSceneForCommand(const std::string& path, ProgressStyle style, Scene& scene) {
-    Progress progress("loading " + path, style);
-    const LoadOptions load{[&progress](float fraction, const std::string& what) {
-        progress.update(double(fraction), what);
-        return !interrupted();
-    }};
-    Result<LoadedScene> loaded = loadScene(path, load);
-    if (interrupted()) return failed("interrupted while the scene was loaded; nothing was written");
+Outcome loadScene(const std::string& path, JobControl& job, Scene& scene) {
+    Result<LoadedScene> loaded = [&] {
+        JobPhase phase(job, "loading " + path);
+        const LoadOptions load{[&](float fraction, const std::string& what) {
+            phase.update(double(fraction), what);
+            return !job.cancelled();
+        }};
+        return tyndall::loadScene(path, load);
+    }();
+    if (job.cancelled())
+        return failed("interrupted while the scene was loaded; nothing was written");
     if (!loaded.ok()) return wrongInput(loaded.message());
     for (const std::string& what : loaded->supplied) log::info("supplied: " + what);
     for (const std::string& note : loaded->notes) log::info("note: " + note);

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "app/compare_input.h"
 #include "core/tone_curve.h"
-#include "programs/compare_input.h"
 
 namespace tyndall {
 

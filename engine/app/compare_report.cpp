@@ -1,4 +1,4 @@
-#include "programs/compare_report.h"
+#include "app/compare_report.h"
 
 #include <algorithm>
 #include <cmath>
