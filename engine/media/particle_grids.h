@@ -21,7 +21,7 @@ struct Medium;
 inline constexpr double kParticlePeak = 105.0 / 16;
 /// Voxels along the radius that a tenth of the particles do not exceed.
 inline constexpr double kVoxelsPerRadius = 3;
-/// In voxels. With this radius the sum over voxels is the particle's matter to 2 %, wherever it lies between them; below it, matter
+/// In voxels. With this radius the sum over voxels is the particle's matter to 3 %, wherever it lies between them; below it, matter
 /// would come and go. Smaller particles are spread over this radius, with the same matter.
 inline constexpr double kLeastParticleRadius = 2;
 
