@@ -245,13 +245,13 @@ TEST(Info, SaysWhatIsInAVolume) {
 TEST(Info, SaysWhatParticlesBecome) {
     const fs::path folder = scratchDir("info-particles");
     std::ofstream(folder / "two.csv") << "x,y,z,radius,density,temperature\n"
-                                         "0,0,0,0.75,2,900\n4,0,0,0.75,2,1500\n";
+                                         "0,0,0,1,2,900\n4,0,0,1,2,1500\n";
     std::ofstream(folder / "s.scene.json")
         << R"({"tyndall": 1, "nodes": [{"name": "two", "medium": {"type": "particles", "file": "two.csv"}}]})";
     // The peak lies on a voxel: 105/16 times 2.
     const std::string line =
-        "medium 'two': particles from 'two.csv'\n    2 particles in (-0.75, -0.75, "
-        "-0.75) to (4.75, 0.75, 0.75) m; voxels of 0.25 m in ";
+        "medium 'two': particles from 'two.csv'\n    2 particles in (-1, -1, -1) to (5, 1, 1) m; "
+        "voxels of 0.25 m in ";
     for (const char* file : {"two.csv", "s.scene.json"}) {
         const ProcessResult result = tyndall({"info", (folder / file).string()});
         ASSERT_EQ(result.status, 0) << result.err;

@@ -114,7 +114,7 @@ TEST(ParticleGrids, OneParticleKeepsItsMatterWhereverItLies) {
         // Beside ten larger ones it is spread over two voxels; those carry no weight to speak of.
         set.particles.resize(11, {{0, 0, 0}, 30, 1e-12f, 0});
         for (size_t other = 1; other < set.particles.size(); ++other)
-            set.particles[other].radius = 0.5f, set.particles[other].position.x = float(other);
+            set.particles[other].radius = 0.6f, set.particles[other].position.x = float(other);
         const ParticleGrids grids = gridsOf(set);
         EXPECT_EQ(grids.notes.size(), 1u);
         EXPECT_NEAR(matterOf(*grids.density) / matterOf(set), 1, bound(kLeastParticleRadius));
@@ -125,8 +125,8 @@ TEST(ParticleGrids, ManyParticlesKeepTheirMatterAndTheirBounds) {
     Draw draw(test::seed());
     const ParticleSet set = randomSet(draw, 500, 3, false);
     const BrickGrid grid = *gridsOf(set).density;
-    // 0.4 % for each at most (above), to either side.
-    EXPECT_NEAR(matterOf(grid) / matterOf(set), 1, 0.002);
+    // 0.1 % for each at most (above).
+    EXPECT_NEAR(matterOf(grid) / matterOf(set), 1, 0.001);
     // Trilinear: nothing farther out than a cell's diagonal from the last voxel with matter in it.
     const double reach = std::sqrt(3.0) * voxelOf(grid);
     const dmat4 indexFromWorld = glm::inverse(grid.worldFromIndex);
@@ -179,14 +179,14 @@ TEST(ParticleGrids, MatterOfOneTemperatureHasItUpToItsEdge) {
         ++inside;
         ASSERT_NEAR(grids.temperature->sample(dvec3(heatFromWorld * at)), 1500, 1e-3);
     }
-    EXPECT_GT(inside, 10000);
+    EXPECT_GT(inside, 5000);
 }
 
 TEST(ParticleGrids, MovedParticlesTakeTheirVoxelsAlong) {
     Draw draw(test::seed());
     ParticleSet set = randomSet(draw, 30, 1, false);
     for (Particle& p : set.particles) { // numbers without rounding
-        p.radius = 0.75f;
+        p.radius = 1;
         p.position = glm::round(p.position * 64.0f) / 64.0f;
     }
     Medium medium;
@@ -319,9 +319,9 @@ TEST(ParticleGrids, AMillionParticlesTakeSeconds) {
     const Result<ParticleSet> cloud = generateParticles("cloud", 1'000'000, 1, 100);
     ASSERT_TRUE(cloud.ok());
     const ParticleGrids grids = gridsOf(*cloud);
-    EXPECT_TRUE(grids.notes.empty()) << grids.notes.front();
-    EXPECT_LT(grids.density->samples.size() * sizeof(float), size_t(100) << 20);
-    EXPECT_NEAR(matterOf(*grids.density) / matterOf(*cloud), 1, 0.002);
+    EXPECT_LT(voxelOf(*grids.density), 0.6); // a quarter of 2.1 m, and a little more for want of room
+    EXPECT_LT(grids.density->samples.size() * sizeof(float), size_t(160) << 20);
+    EXPECT_NEAR(matterOf(*grids.density) / matterOf(*cloud), 1, 0.001);
 }
 
 } // namespace
