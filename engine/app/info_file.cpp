@@ -11,6 +11,7 @@
 #include "core/image.h"
 #include "core/image_metrics.h"
 #include "media/grid_import.h"
+#include "media/particle_grids.h"
 #include "scene/scene_file.h"
 
 namespace tyndall {
@@ -141,7 +142,6 @@ const char* kindName(MediumKind kind) {
     case MediumKind::Sphere: return "sphere";
     case MediumKind::Height: return "height";
     case MediumKind::Grid: return "grid";
-    case MediumKind::Particles: return "particles";
     }
     return "";
 }
@@ -154,6 +154,21 @@ const char* kindName(LightType type) {
     case LightType::Rect: return "rect";
     }
     return "";
+}
+
+std::string mediumLine(const Medium& medium) {
+    const std::string from = medium.file.empty() ? "" : " from '" + medium.file + "'";
+    const char* kind = medium.particles ? "particles" : kindName(medium.kind);
+    std::string line = fmt::format("medium '{}': {}{}\n", medium.name, kind, from);
+    if (!medium.particles) return line;
+    const BrickGrid& grid = *medium.density;
+    return line +
+           fmt::format(
+               "    {} particles in {}; voxels of {:.6g} m in {} bricks, density {:.6g} to {:.6g}{}\n",
+               medium.particles->particles.size(), boundsText(medium.particles->bounds()),
+               grid.worldFromIndex[0][0], grid.slotCount(), grid.minimum, grid.maximum,
+               medium.temperature ? fmt::format(", up to {:.6g} K", medium.temperature->maximum)
+                                  : "");
 }
 
 std::string sceneLines(const Scene& scene) {
@@ -172,15 +187,26 @@ std::string sceneLines(const Scene& scene) {
     text += fmt::format("extent: {}\n", boundsText(scene.worldBounds()));
     for (const Light& light : scene.lights)
         text += fmt::format("light '{}': {}\n", light.name, kindName(light.type));
-    for (const Medium& medium : scene.media)
-        text += fmt::format("medium '{}': {}{}\n", medium.name, kindName(medium.kind),
-                            medium.file.empty() ? "" : " from '" + medium.file + "'");
+    for (const Medium& medium : scene.media) text += mediumLine(medium);
     for (const Camera& camera : scene.cameras)
         text +=
             fmt::format("camera '{}': {}\n", camera.name,
                         camera.type == CameraType::Perspective ? "perspective" : "orthographic");
     if (scene.environment.image) text += fmt::format("environment: '{}'\n", scene.environment.file);
     for (const std::string& setting : scene.settings) text += fmt::format("setting {}\n", setting);
+    return text;
+}
+
+Result<std::string> describeParticles(const fs::path& path) {
+    Result<ParticleSet> set = readParticles(path);
+    if (!set.ok()) return set.error();
+    Medium medium;
+    medium.name = path.stem().string();
+    medium.file = path.filename().string();
+    const auto notes = setParticles(medium, std::make_shared<const ParticleSet>(std::move(*set)));
+    if (!notes.ok()) return Error{fmt::format("'{}': {}", path.string(), notes.message())};
+    std::string text = mediumLine(medium);
+    for (const std::string& note : *notes) text += "note: " + note + "\n";
     return text;
 }
 
@@ -203,12 +229,13 @@ Result<std::string> describeScene(const fs::path& path, const std::string& exten
 Result<std::string> describeFile(const fs::path& path, const JobControl& job) {
     const std::string extension = lowerExtension(path);
     if (extension == ".vdb" || extension == ".nvdb") return describeGrids(path);
+    if (extension == ".csv") return describeParticles(path);
     if (extension == ".exr") return describeExr(path);
     if (extension == ".hdr") return describeHdr(path);
     if (extension == ".json" || extension == ".gltf" || extension == ".glb")
         return describeScene(path, extension, job);
     return Error{fmt::format(
-        "'{}' is of no kind that is understood: scene files (.json), .gltf, .glb, .vdb, .nvdb, .exr and .hdr are",
+        "'{}' is of no kind that is understood: scene files (.json), .gltf, .glb, .vdb, .nvdb, particles (.csv), .exr and .hdr are",
         path.string())};
 }
 

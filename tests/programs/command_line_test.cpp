@@ -280,6 +280,28 @@ TEST(Info, SaysWhatIsInAVolume) {
                                   HasSubstr("active voxels"), HasSubstr("understood")));
 }
 
+TEST(Info, SaysWhatParticlesBecome) {
+    const fs::path folder = scratchDir("info-particles");
+    std::ofstream(folder / "two.csv") << "x,y,z,radius,density,temperature\n"
+                                         "0,0,0,1,2,900\n4,0,0,1,2,1500\n";
+    std::ofstream(folder / "s.scene.json")
+        << R"({"tyndall": 1, "nodes": [{"name": "two", "medium": {"type": "particles", "file": "two.csv"}}]})";
+    // The peak lies on a voxel: 105/16 times 2.
+    const std::string line =
+        "medium 'two': particles from 'two.csv'\n    2 particles in (-1, -1, -1) to (5, 1, 1) m; "
+        "voxels of 0.25 m in ";
+    for (const char* file : {"two.csv", "s.scene.json"}) {
+        const ProcessResult result = tyndall({"info", (folder / file).string()});
+        ASSERT_EQ(result.status, 0) << result.err;
+        EXPECT_THAT(result.out, HasSubstr(line)) << file;
+        EXPECT_THAT(result.out, HasSubstr("density 0 to 13.125, up to 1500 K")) << file;
+    }
+    std::ofstream(folder / "bad.csv") << "x,y,z,radius,density\n0,0,0,-1,2\n";
+    const ProcessResult bad = tyndall({"info", (folder / "bad.csv").string()});
+    EXPECT_EQ(bad.status, 2);
+    EXPECT_THAT(bad.err, HasSubstr("line 2: radius is -1; it must be greater than 0"));
+}
+
 TEST(Graph, ComesInThreeFormats) {
     const fs::path folder = scratchDir("graph");
     const std::string scene = writeFoggyScene(folder).string();

@@ -1,5 +1,5 @@
 tyndall_test(unit_media LABEL unit
-  SOURCES media_blackbody_test.cpp media_bricks_test.cpp media_integral_test.cpp media_particles_test.cpp
+  SOURCES media_blackbody_test.cpp media_bricks_test.cpp media_integral_test.cpp media_particle_grids_test.cpp media_particles_test.cpp
     media_phase_test.cpp media_sampling_test.cpp
   DEPENDS Tyndall::media INTERNALS media)
 
