@@ -7,11 +7,9 @@
 #include <fmt/format.h>
 #include <imgui.h>
 
+#include "app/load_scene.h"
 #include "core/log.h"
 #include "core/progress.h"
-#include "layout.h"
-#include "plugin/builtin_plugins.h"
-#include "scene/scene_file.h"
 
 namespace tyndall::editor {
 namespace fs = std::filesystem;
@@ -39,29 +37,22 @@ void listen(GLFWwindow* window, bool* flag) {
     glfwSetWindowCloseCallback(window, [](GLFWwindow* w) { wake(w); });
 }
 
-bool eventArrived = false; // written by GLFW's callbacks, which know only the window
-
 } // namespace
 
 Outcome App::run() {
-    if (Outcome opened = openScene(); !opened.ok()) return opened;
+    Scene scene;
+    if (Outcome opened = openScene(scene); !opened.ok()) return opened;
     if (Outcome opened = openWindow(); !opened.ok()) return opened;
+    if (Outcome opened = openSession(std::move(scene)); !opened.ok()) return opened;
     return loop();
 }
 
-Outcome App::openScene() {
-    Progress progress("loading " + options_.render.scene, detectProgressStyle());
-    LoadOptions load;
-    load.progress = [&progress](float fraction, const std::string& what) {
-        progress.update(double(fraction), what);
-        return true;
-    };
-    Result<LoadedScene> loaded = loadScene(options_.render.scene, load);
-    if (!loaded.ok()) return wrongInput(loaded.message());
-    for (const std::string& what : loaded->supplied) log::info("supplied: " + what);
-    for (const std::string& note : loaded->notes) log::info("note: " + note);
-    scene_ = std::move(loaded->scene);
-    return {};
+Outcome App::openScene(Scene& scene) {
+    Progress shown("loading " + options_.render.scene, detectProgressStyle());
+    JobControl job([&shown](const JobProgress& progress) {
+        shown.update(progress.fraction, progress.sentence);
+    });
+    return loadScene(options_.render.scene, job, scene);
 }
 
 Outcome App::openWindow() {
@@ -76,28 +67,23 @@ Outcome App::openWindow() {
     if (!window.ok())
         return failed(window.message() + "; 'tyndall capture' renders without a display");
     window_ = std::move(*window);
+    return {};
+}
 
-    RendererOptions rendererOptions;
-    rendererOptions.builtinPlugins = plugin::builtinPlugins();
-    rendererOptions.pluginFiles = options_.plan.plugins;
-    Result<std::unique_ptr<Renderer>> renderer =
-        Renderer::create(window_.context(), rendererOptions);
-    if (!renderer.ok())
-        return options_.plan.plugins.empty() ? failed(renderer.message())
-                                             : wrongInput(renderer.message());
-    renderer_ = std::move(*renderer);
-    if (Outcome opened = Session::open(scene_, *renderer_, messages_, options_, session_);
+Outcome App::openSession(Scene scene) {
+    if (Outcome opened = RenderSession::openIn(window_.context(), std::move(scene), options_.render,
+                                               nullptr, rendering_);
         !opened.ok())
         return opened;
-
+    session_ = std::make_unique<Session>(*rendering_, messages_, options_);
     // A processor that draws is slow: moving about matters more than pixels. A screenshot of so many frames has them all.
     const std::string& driver = window_.context().capabilities().renderer;
     if (options_.frames == 0 && (driver.find("llvmpipe") != std::string::npos ||
                                  driver.find("softpipe") != std::string::npos))
         session_->reduction = 2;
 
-    listen(window_.handle(), &eventArrived);
-    interface_ = std::make_unique<UserInterface>(window_, !options_.hidden);
+    listen(window_.handle(), &eventArrived_);
+    interface_ = std::make_unique<UserInterface>(window_, layout_, !options_.hidden);
     savePath_ = fs::path(options_.render.scene)
                     .filename()
                     .replace_extension("")
@@ -117,7 +103,7 @@ Outcome App::loop() {
     bool first = true;
     while (!done()) {
         waitForEvents();
-        if (renderer_->reloadShaders()) session_->picture().invalidate();
+        if (rendering_->renderer().reloadShaders()) session_->picture().invalidate();
         if (options_.frames > 0) session_->picture().invalidate(); // so many frames were asked for
         drawInterface();
         if (beforeFirstPicture_ > 0 && --beforeFirstPicture_ > 0)
@@ -129,7 +115,8 @@ Outcome App::loop() {
         }
         if (first && session_->picture().result()) {
             log::info(session_->picture().result()->plan.why);
-            for (const std::string& note : renderer_->notes()) log::info("note: " + note);
+            for (const std::string& note : rendering_->renderer().notes())
+                log::info("note: " + note);
             first = false;
         }
         if (window_.shouldClose()) {
@@ -152,7 +139,7 @@ void App::waitForEvents() {
         gl::Window::pollEvents();
     } else if (
         !timingsKnown_) { // the last frames' times come some frames late; none follow, so they are waited for
-        renderer_->waitForTimings();
+        rendering_->renderer().waitForTimings();
         timingsKnown_ = true;
         interfaceFrames_ = 1;
         gl::Window::pollEvents();
@@ -162,8 +149,8 @@ void App::waitForEvents() {
     const bool held =
         ImGui::IsAnyMouseDown() ||
         ImGui::GetIO().WantTextInput; // keys that are held move the camera; a cursor blinks
-    if (eventArrived || held) interfaceFrames_ = kSettleFrames;
-    eventArrived = false;
+    if (eventArrived_ || held) interfaceFrames_ = kSettleFrames;
+    eventArrived_ = false;
 }
 
 void App::drawInterface() {
@@ -183,7 +170,7 @@ void App::drawInterface() {
                      ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoBringToFrontOnFocus |
                      ImGuiWindowFlags_NoScrollWithMouse);
     ImGui::PopStyleVar(2);
-    drawPanes(*session_);
+    layout_.draw(*session_);
     ImGui::End();
     handleKeys();
     drawSaveDialog();
@@ -254,9 +241,9 @@ void App::drawMenu() {
     if (ImGui::BeginMenu("View")) {
         if (ImGui::MenuItem("Frame the selection, or the scene", "F")) session_->frameSelection();
         if (ImGui::MenuItem("Back to the scene's camera", "Home"))
-            session_->lookThrough(scene_.activeCamera);
+            session_->lookThrough(session_->scene().activeCamera);
         ImGui::MenuItem("Converge", "C", &session_->request.converge);
-        if (ImGui::MenuItem("Panes as at first")) resetLayout();
+        if (ImGui::MenuItem("Panes as at first")) layout_.reset();
         ImGui::EndMenu();
     }
     if (ImGui::BeginMenu("Help")) {
@@ -330,7 +317,7 @@ void App::handleKeys() {
     }
     if (ImGui::IsMouseDown(ImGuiMouseButton_Right)) return; // keys fly
     if (pressed(GLFW_KEY_F)) session_->frameSelection();
-    if (pressed(GLFW_KEY_HOME)) session_->lookThrough(scene_.activeCamera);
+    if (pressed(GLFW_KEY_HOME)) session_->lookThrough(session_->scene().activeCamera);
     if (pressed(GLFW_KEY_C)) session_->request.converge = !session_->request.converge;
     if (pressed(GLFW_KEY_F12)) screenshot("png");
     if (pressed(GLFW_KEY_ESCAPE)) {

@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "gl/window.h"
+#include "layout.h"
 #include "messages.h"
 #include "options.h"
 #include "session.h"
@@ -18,8 +19,9 @@ public:
     Outcome run();
 
 private:
-    Outcome openScene();
+    Outcome openScene(Scene& scene);
     Outcome openWindow();
+    Outcome openSession(Scene scene);
     Outcome loop();
     /// Waits for something to happen, if nothing is to be done meanwhile.
     void waitForEvents();
@@ -36,13 +38,14 @@ private:
 
     EditorOptions options_;
     Messages messages_;
-    Scene scene_;
     gl::Window window_; // outlives what is made in its context
-    std::unique_ptr<Renderer> renderer_;
+    std::unique_ptr<RenderSession> rendering_;
     std::unique_ptr<Session> session_;
+    Layout layout_; // outlives the interface, which writes it down at its end
     std::unique_ptr<UserInterface> interface_;
 
-    int interfaceFrames_ = 3; // still to draw: ImGui needs a few to settle after an event
+    bool eventArrived_ = false; // set by the window's callbacks
+    int interfaceFrames_ = 3;   // still to draw: ImGui needs a few to settle after an event
     int beforeFirstPicture_ = 3;
     bool timingsKnown_ = true; // of the last picture
     bool quit_ = false, askToQuit_ = false, openSaveDialog_ = false;

@@ -12,26 +12,6 @@ namespace tyndall::editor {
 namespace {
 
 constexpr float kSmallest = 0.06f, kLargest = 0.94f; // shares that a bar can be dragged to
-ImVec2 paneSpacing; // inside panes, where drawPanes() has none between them
-Layout layout; // one window, one arrangement; ImGui's settings handler needs it to have an address
-
-void* openSection(ImGuiContext*, ImGuiSettingsHandler*, const char*) { return &layout; }
-
-void readLine(ImGuiContext*, ImGuiSettingsHandler*, void*, const char* line) {
-    Layout read = layout;
-    if (std::sscanf(line, "Shares=%f,%f,%f,%f,%f", &read.left, &read.right, &read.bottom,
-                    &read.leftUpper, &read.rightUpper) != 5)
-        return;
-    for (const float share : {read.left, read.right, read.bottom, read.leftUpper, read.rightUpper})
-        if (!(share >= kSmallest && share <= kLargest)) return; // edited by hand, or damaged
-    if (read.left + read.right < kLargest) layout = read;
-}
-
-void writeAll(ImGuiContext*, ImGuiSettingsHandler* handler, ImGuiTextBuffer* text) {
-    text->appendf("[%s][Panes]\nShares=%.4f,%.4f,%.4f,%.4f,%.4f\n\n", handler->TypeName,
-                  double(layout.left), double(layout.right), double(layout.bottom),
-                  double(layout.leftUpper), double(layout.rightUpper));
-}
 
 /// A bar to drag. `share` grows to the right or down, or the other way for `sign` -1; `extent`: pixels of the whole.
 void splitter(const char* name, bool vertical, float& share, float extent, float sign,
@@ -60,9 +40,9 @@ struct Tab {
 };
 
 /// A child window whose panes are tabs.
-void drawTabs(const char* name, const ImVec2& size, Session& session,
+void drawTabs(const char* name, const ImVec2& size, const ImVec2& spacing, Session& session,
               std::initializer_list<Tab> tabs) {
-    ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, paneSpacing);
+    ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, spacing);
     ImGui::BeginChild(name, size, true);
     if (ImGui::BeginTabBar("tabs")) {
         for (const Tab& tab : tabs) {
@@ -78,76 +58,95 @@ void drawTabs(const char* name, const ImVec2& size, Session& session,
     ImGui::PopStyleVar();
 }
 
-struct Room {
-    float width, height, bar;
-};
+} // namespace
 
-void drawLeft(Session& session, const Room& room, float width) {
+void Layout::drawLeft(Session& session, const Room& room, float width) {
     ImGui::BeginGroup();
-    const float upper = room.height * layout.leftUpper;
-    drawTabs("scene", {width, upper}, session, {{"Scene", drawSceneTree}});
-    splitter("##leftBar", false, layout.leftUpper, room.height, 1, width);
-    drawTabs("inspector", {width, room.height - upper - room.bar}, session,
+    const float upper = room.height * shares_.leftUpper;
+    drawTabs("scene", {width, upper}, paneSpacing_, session, {{"Scene", drawSceneTree}});
+    splitter("##leftBar", false, shares_.leftUpper, room.height, 1, width);
+    drawTabs("inspector", {width, room.height - upper - room.bar}, paneSpacing_, session,
              {{"Inspector", drawInspector}});
     ImGui::EndGroup();
 }
 
-void drawMiddle(Session& session, const Room& room, float width) {
+void Layout::drawMiddle(Session& session, const Room& room, float width) {
     ImGui::BeginGroup();
-    const float lower = room.height * layout.bottom;
+    const float lower = room.height * shares_.bottom;
     ImGui::BeginChild("viewport", {width, room.height - lower - room.bar}, true,
                       ImGuiWindowFlags_NoScrollbar | ImGuiWindowFlags_NoScrollWithMouse);
-    ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, paneSpacing);
+    ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, paneSpacing_);
     drawViewport(session);
     ImGui::PopStyleVar();
     ImGui::EndChild();
-    splitter("##middleBar", false, layout.bottom, room.height, -1, width);
-    drawTabs("reports", {width, lower}, session,
+    splitter("##middleBar", false, shares_.bottom, room.height, -1, width);
+    drawTabs("reports", {width, lower}, paneSpacing_, session,
              {{"Profiler", drawProfiler}, {"Frame graph", drawFrameGraph}, {"Log", drawLog}});
     ImGui::EndGroup();
 }
 
-void drawRight(Session& session, const Room& room, float width) {
+void Layout::drawRight(Session& session, const Room& room, float width) {
     ImGui::BeginGroup();
-    const float upper = room.height * layout.rightUpper;
-    drawTabs("techniques", {width, upper}, session, {{"Techniques", drawTechniques}});
-    splitter("##rightBar", false, layout.rightUpper, room.height, 1, width);
-    drawTabs("settings", {width, room.height - upper - room.bar}, session,
+    const float upper = room.height * shares_.rightUpper;
+    drawTabs("techniques", {width, upper}, paneSpacing_, session, {{"Techniques", drawTechniques}});
+    splitter("##rightBar", false, shares_.rightUpper, room.height, 1, width);
+    drawTabs("settings", {width, room.height - upper - room.bar}, paneSpacing_, session,
              {{"Settings", drawSettings}});
     ImGui::EndGroup();
 }
 
-} // namespace
+void Layout::read(const char* line) {
+    Shares read = shares_;
+    if (std::sscanf(line, "Shares=%f,%f,%f,%f,%f", &read.left, &read.right, &read.bottom,
+                    &read.leftUpper, &read.rightUpper) != 5)
+        return;
+    for (const float share : {read.left, read.right, read.bottom, read.leftUpper, read.rightUpper})
+        if (!(share >= kSmallest && share <= kLargest)) return; // edited by hand, or damaged
+    if (read.left + read.right < kLargest) shares_ = read;
+}
 
-void rememberLayout() {
+void Layout::write(const char* section, ImGuiTextBuffer& text) const {
+    text.appendf("[%s][Panes]\nShares=%.4f,%.4f,%.4f,%.4f,%.4f\n\n", section, double(shares_.left),
+                 double(shares_.right), double(shares_.bottom), double(shares_.leftUpper),
+                 double(shares_.rightUpper));
+}
+
+void Layout::remember() {
     ImGuiSettingsHandler handler;
     handler.TypeName = "Tyndall";
     handler.TypeHash = ImHashStr("Tyndall");
-    handler.ReadOpenFn = openSection;
-    handler.ReadLineFn = readLine;
-    handler.WriteAllFn = writeAll;
+    handler.UserData = this;
+    handler.ReadOpenFn = [](ImGuiContext*, ImGuiSettingsHandler* section, const char*) {
+        return section->UserData;
+    };
+    handler.ReadLineFn = [](ImGuiContext*, ImGuiSettingsHandler*, void* layout, const char* line) {
+        static_cast<Layout*>(layout)->read(line);
+    };
+    handler.WriteAllFn = [](ImGuiContext*, ImGuiSettingsHandler* section, ImGuiTextBuffer* text) {
+        static_cast<const Layout*>(section->UserData)->write(section->TypeName, *text);
+    };
     ImGui::GetCurrentContext()->SettingsHandlers.push_back(handler);
 }
 
-void resetLayout() {
-    layout = Layout{};
+void Layout::reset() {
+    shares_ = {};
     ImGui::MarkIniSettingsDirty();
 }
 
-void drawPanes(Session& session) {
+void Layout::draw(Session& session) {
     const ImVec2 all = ImGui::GetContentRegionAvail();
     const Room room{all.x, all.y, std::max(4.0f, ImGui::GetFontSize() * 0.3f)};
-    const float left = room.width * layout.left, right = room.width * layout.right;
+    const float left = room.width * shares_.left, right = room.width * shares_.right;
     // Bars are what lies between panes: no other room.
-    paneSpacing = ImGui::GetStyle().ItemSpacing;
+    paneSpacing_ = ImGui::GetStyle().ItemSpacing;
     ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, ImVec2(0, 0));
     drawLeft(session, room, left);
     ImGui::SameLine(0, 0);
-    splitter("##left", true, layout.left, room.width, 1, room.height);
+    splitter("##left", true, shares_.left, room.width, 1, room.height);
     ImGui::SameLine(0, 0);
     drawMiddle(session, room, room.width - left - right - 2 * room.bar);
     ImGui::SameLine(0, 0);
-    splitter("##right", true, layout.right, room.width, -1, room.height);
+    splitter("##right", true, shares_.right, room.width, -1, room.height);
     ImGui::SameLine(0, 0);
     drawRight(session, room, right);
     ImGui::PopStyleVar();

@@ -14,10 +14,10 @@ std::string LivePicture::keyOf(Renderer& renderer, const Scene& scene,
                                const FrameRequest& request) {
     const SceneVersions& v = scene.versions;
     std::string key = fmt::format(
-        "{} {} {} {} {} {} {} {} {} {} | {}x{} {} {} {} {} {} {} {} | ", v.structure, v.transforms,
+        "{} {} {} {} {} {} {} {} {} {} | {}x{} {} {} {} {} {} {} | ", v.structure, v.transforms,
         v.meshes, v.materials, v.textures, v.lights, v.media, v.cameras, v.environment, scene.ev100,
         request.width, request.height, request.cameraNode, scene.activeCamera, request.terms,
-        request.gi, request.time, request.seed, request.converge);
+        request.time, request.seed, request.converge);
     if (request.pose) {
         for (int c = 0; c < 4; ++c)
             for (int r = 0; r < 4; ++r)

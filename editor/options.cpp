@@ -1,10 +1,11 @@
 #include "options.h"
 
-#include <algorithm>
 #include <filesystem>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
+
+#include "app/program.h"
 
 namespace tyndall::editor {
 namespace fs = std::filesystem;
@@ -20,26 +21,7 @@ constexpr const char* kExamples =
     "\nExit status: 0 done; 1 it failed, or there is no display; 2 the command line or a file is wrong.";
 
 void addOptions(CLI::App& program, EditorOptions& options) {
-    RenderOptions& render = options.render;
-    program.add_option("SCENE", render.scene,
-                       "A scene file, or a .gltf, .glb, .vdb or .nvdb (the demo scene)");
-    program
-        .add_option("--size", render.size,
-                    "Width and height of the picture in pixels (as the viewport has room)")
-        ->type_name("WxH");
-    addTechniqueOptions(program, render);
-    program
-        .add_option("--camera", render.camera,
-                    "The camera to look through first, by node name (the scene's own)")
-        ->type_name("NAME");
-    program
-        .add_option(
-            "--pose", render.pose,
-            "Where to look from first: x,y,z,qx,qy,qz,qw in metres and as a quaternion, perhaps ,yfov in radians")
-        ->type_name("NUMBERS")
-        ->allow_extra_args(false);
-    program.add_option("--time", render.time, "Seconds on the scene's clock (0)")
-        ->type_name("SECONDS");
+    addRenderOptions(program, options.render, {"the demo scene", "as the viewport has room"});
     program.add_flag("--converge", options.converge,
                      "Average frames of the still scene until the noise is gone");
     program.add_option("--window", options.windowSize, "Width and height of the window (1600x950)")
@@ -58,14 +40,11 @@ void addOptions(CLI::App& program, EditorOptions& options) {
 Result<void> check(EditorOptions& options) {
     options.fixedSize = !options.render.size.empty();
     if (!options.fixedSize) options.render.size = RenderOptions{}.size;
-    Result<RenderPlan> plan = understand(options.render);
-    if (!plan.ok()) return plan.error();
-    options.plan = std::move(*plan);
+    if (const Result<RenderPlan> plan = understand(options.render); !plan.ok()) return plan.error();
     if (Result<void> window =
-            parseSize(options.windowSize, options.windowWidth, options.windowHeight);
+            parseSize("--window", options.windowSize, options.windowWidth, options.windowHeight);
         !window.ok())
-        return Error{fmt::format("--window {}: it takes WIDTHxHEIGHT, such as 1600x950",
-                                 options.windowSize)};
+        return window;
     if (!options.screenshot.empty() && options.frames == 0)
         return Error{
             "--screenshot: say with --frames how many frames to render before it is taken"};
@@ -98,32 +77,15 @@ std::string findDemoScene() {
     return {};
 }
 
-std::optional<EditorOptions> readCommandLine(int argc, char** argv, Outcome& outcome) {
-    EditorOptions options;
+std::optional<Outcome> readOptions(int argc, char** argv, EditorOptions& options) {
     options.render.size.clear();
     CLI::App program("A window to look around in a scene with smoke, fog and clouds in it.",
                      "tyndall-editor");
-    program.set_version_flag("--version", "tyndall-editor " TYNDALL_VERSION);
-    program.set_help_flag("-h,--help", "Print this and exit");
-    program.footer(kExamples);
-    program.get_formatter()->column_width(34);
+    prepareCommandLine(program, kExamples);
     addOptions(program, options);
-    try {
-        program.parse(argc, argv);
-    } catch (const CLI::Success& wanted) { // --help, --version
-        program.exit(wanted);
-        return std::nullopt;
-    } catch (const CLI::ParseError& error) {
-        std::string message = error.what();
-        std::replace(message.begin(), message.end(), '\n', ' ');
-        outcome = wrongInput(message + " ('tyndall-editor --help' lists what there is)");
-        return std::nullopt;
-    }
-    if (Result<void> checked = check(options); !checked.ok()) {
-        outcome = wrongInput(checked.message());
-        return std::nullopt;
-    }
-    return options;
+    if (std::optional<Outcome> done = readCommandLine(program, argc, argv)) return done;
+    if (Result<void> checked = check(options); !checked.ok()) return wrongInput(checked.message());
+    return {};
 }
 
 } // namespace tyndall::editor

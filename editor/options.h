@@ -4,14 +4,13 @@
 #include <optional>
 #include <string>
 
-#include "programs/outcome.h"
-#include "programs/render_options.h"
+#include "app/options.h"
+#include "app/outcome.h"
 
 namespace tyndall::editor {
 
 struct EditorOptions {
-    RenderOptions render;   // as `tyndall capture` has them
-    RenderPlan plan;        // the same, understood; without --size the pane decides
+    RenderOptions render;   // as `tyndall capture` has them; without --size the pane decides
     bool fixedSize = false; // --size was given
     bool hidden = false;    // no window appears and no layout is read or written
     bool converge = false;
@@ -21,8 +20,8 @@ struct EditorOptions {
     int windowWidth = 0, windowHeight = 0;
 };
 
-/// Without a value: --help or --version was printed, all is done. The outcome says what is wrong with the command line.
-std::optional<EditorOptions> readCommandLine(int argc, char** argv, Outcome& outcome);
+/// A value says that all is done: --help or --version was printed, or the command line is wrong.
+std::optional<Outcome> readOptions(int argc, char** argv, EditorOptions& options);
 
 /// content/demo.scene.json beside the program, as built or as installed; empty where there is none.
 std::string findDemoScene();

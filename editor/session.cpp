@@ -2,19 +2,12 @@
 
 #include <fmt/format.h>
 
+#include "app/program.h"
 #include "core/log.h"
 #include "scene/scene_writer.h"
 
 namespace tyndall::editor {
 namespace {
-
-constexpr std::string_view kTechniqueKey = "gi.technique=";
-
-Result<int> findCamera(const Scene& scene, const std::string& name) {
-    for (size_t i = 0; i < scene.nodes.size(); ++i)
-        if (scene.nodes[i].camera != kNone && scene.nodes[i].name == name) return int(i);
-    return Error{fmt::format("--camera {}: the scene has no camera of this name", name)};
-}
 
 /// World bounds of a node and what hangs below it; lights and cameras count as points.
 Bounds boundsBelow(const Scene& scene, int root) {
@@ -54,71 +47,18 @@ std::string shellWord(const std::string& text) {
     return word + "'";
 }
 
-Session::Session(Scene& scene, Renderer& renderer, Messages& messages, const EditorOptions& options)
-    : scene_(scene), renderer_(renderer), messages_(messages), options_(options),
-      sceneFile_(options.render.scene), history_(EditTarget{scene, renderer.settings()}) {
-    request.width = options.plan.width;
-    request.height = options.plan.height;
-    request.terms = options.plan.terms;
-    request.time = options.render.time;
-    request.seed = options.render.seed;
+Session::Session(RenderSession& rendering, Messages& messages, const EditorOptions& options)
+    : request(rendering.request()), rendering_(rendering), scene_(rendering.scene()),
+      renderer_(rendering.renderer()), messages_(messages), options_(options),
+      sceneFile_(options.render.scene), history_(EditTarget{scene_, renderer_.settings()}) {
     request.converge = options.converge;
-}
-
-Outcome Session::open(Scene& scene, Renderer& renderer, Messages& messages,
-                      const EditorOptions& options, std::unique_ptr<Session>& session) {
-    std::unique_ptr<Session> opened(new Session(scene, renderer, messages, options));
-    if (Outcome done = opened->applyOptions(); !done.ok()) return done;
-    if (const Result<void> set = renderer.setScene(scene); !set.ok())
-        return wrongInput(set.message());
-    session = std::move(opened);
-    return {};
-}
-
-Outcome Session::assign(const std::string& assignment, const std::string& origin) {
-    if (assignment.starts_with(kTechniqueKey)) {
-        request.gi = assignment.substr(kTechniqueKey.size());
-        return {};
-    }
-    const Result<void> done = settings().assign(assignment);
-    return done.ok() ? Outcome{} : wrongInput(origin + done.message());
-}
-
-Outcome Session::applyOptions() {
-    const RenderOptions& render = options_.render;
-    for (const std::string& assignment : scene_.settings)
-        if (Outcome done = assign(assignment, fmt::format("'{}': /settings: ", render.scene));
-            !done.ok())
-            return done;
-    giOfFile_ = request.gi;
-    for (const SettingsGroup& group : settings().groups())
-        for (const SettingDesc& field : group.fields)
-            settingsOfFile_[field.key] = settingToText(field, group.values);
-    if (options_.plan.quality) settings().applyPreset(*options_.plan.quality);
-    for (const std::string& assignment : render.assignments)
-        if (Outcome done = assign(assignment, "--set: "); !done.ok()) return done;
-    if (!render.gi.empty()) request.gi = render.gi;
-    const Result<FramePlan> plan =
-        makePlan(request.gi, request.terms, renderer_.techniques(), {true, true, true, true});
-    if (!plan.ok()) return wrongInput("--gi " + request.gi + ": " + plan.message());
-
-    if (!render.camera.empty()) {
-        const Result<int> node = findCamera(scene_, render.camera);
-        if (!node.ok()) return wrongInput(node.message());
-        request.cameraNode = *node;
-    } else if (scene_.activeCamera == kNone) {
-        return wrongInput(fmt::format(
-            "'{}' has no camera: add a node with a \"camera\" and name it under \"camera\"",
-            render.scene));
-    }
-    if (const std::optional<PoseOption>& pose = options_.plan.pose) {
+    if (const std::optional<PoseOption>& pose = rendering.plan().pose) {
         dmat4 worldFromCamera = glm::mat4_cast(pose->rotation);
         worldFromCamera[3] = dvec4(pose->position, 1);
         camera_.reset(worldFromCamera, sceneSize());
         yfov_ = pose->yfov;
         free_ = true;
     }
-    return {};
 }
 
 double Session::sceneSize() const {
@@ -175,7 +115,7 @@ void Session::saveExr(const std::string& path) {
     const ImageLayer layer{"", beauty};
     const Result<void> written =
         writeExr(path, std::span(&layer, 1),
-                 {{"tyndall.command", captureLine()}, {"tyndall.version", TYNDALL_VERSION}});
+                 {{"tyndall.command", captureLine()}, {"tyndall.version", programVersion()}});
     written.ok() ? log::info("wrote " + path) : log::error(written.message());
 }
 
@@ -187,6 +127,20 @@ void Session::saveScene(const std::string& path) {
     log::info("wrote " + path);
 }
 
+/// Those that are not as the scene file has them, as options.
+std::string Session::changedSettings() const {
+    std::string options;
+    for (const SettingsGroup& group : renderer_.settings().groups())
+        for (const SettingDesc& field : group.fields) {
+            const std::string key = field.key, text = settingToText(field, group.values);
+            if (key.starts_with("inspect.") || rendering_.settingsOfScene().at(key) == text)
+                continue;
+            options += key == kTechniqueSetting ? " --gi " + shellWord(text)
+                                                : " --set " + shellWord(key + "=" + text);
+        }
+    return options;
+}
+
 std::string Session::captureLine() const {
     std::string line = "tyndall capture " + shellWord(sceneFile_);
     line += fmt::format(" --size {}x{}", request.width, request.height);
@@ -194,18 +148,10 @@ std::string Session::captureLine() const {
         line += " --camera " + shellWord(scene_.nodes[size_t(request.cameraNode)].name);
     // With '=', since a number may begin with a minus.
     if (free_) line += " --pose=" + poseText({camera_.position(), camera_.rotation(), yfov_});
-    if (request.gi != giOfFile_) line += " --gi " + shellWord(request.gi);
     if (request.terms != kAllTerms) line += " --terms " + termNames(request.terms);
     for (const std::string& plugin : options_.render.plugins)
         line += " --plugin " + shellWord(plugin);
-    for (const SettingsGroup& group : renderer_.settings().groups())
-        for (const SettingDesc& field : group.fields) {
-            const std::string key = field.key, text = settingToText(field, group.values);
-            const auto before = settingsOfFile_.find(key);
-            if (!key.starts_with("inspect.") && before != settingsOfFile_.end() &&
-                before->second != text)
-                line += " --set " + shellWord(key + "=" + text);
-        }
+    line += changedSettings();
     if (request.time != 0) line += fmt::format(" --time {}", request.time);
     if (request.seed != 0) line += fmt::format(" --seed {}", request.seed);
     if (request.converge) line += " --converge";

@@ -1,27 +1,27 @@
 #pragma once
 // One open scene and everything that the panes show and change.
 
-#include <map>
 #include <string>
 
+#include "app/render_session.h"
 #include "camera_controller.h"
 #include "command.h"
 #include "live_picture.h"
 #include "messages.h"
 #include "options.h"
-#include "renderer/renderer.h"
 
 namespace tyndall::editor {
 
 class Session {
 public:
-    /// `scene` and `renderer` outlive the session. Settings of the scene file, preset and `--set` are applied in that order.
-    static Outcome open(Scene& scene, Renderer& renderer, Messages& messages,
-                        const EditorOptions& options, std::unique_ptr<Session>& session);
+    /// Both outlive the session.
+    Session(RenderSession& rendering, Messages& messages, const EditorOptions& options);
 
     [[nodiscard]] Scene& scene() { return scene_; }
     [[nodiscard]] Renderer& renderer() { return renderer_; }
     [[nodiscard]] SettingsRegistry& settings() { return renderer_.settings(); }
+    /// What gi.technique says.
+    [[nodiscard]] std::string technique() { return settings().get(kTechniqueSetting).value(); }
     [[nodiscard]] Messages& messages() { return messages_; }
     [[nodiscard]] const EditorOptions& options() const { return options_; }
     [[nodiscard]] History& history() { return history_; }
@@ -31,9 +31,8 @@ public:
 
     // --- what is looked at ---
     int selected = kNone; // node
-    FrameRequest
-        request;       // size, terms, technique, resource shown; the pose is filled in by update()
-    int reduction = 1; // the picture has this part of the pane's pixels along each side
+    FrameRequest request; // size, terms, resource shown; the pose is filled in by update()
+    int reduction = 1;    // the picture has this part of the pane's pixels along each side
     /// Looks through a camera of the scene again.
     void lookThrough(int cameraNode);
     /// The free camera, which starts where the picture is seen from now.
@@ -47,6 +46,12 @@ public:
     /// Renders if something changed; true when there is a new picture.
     bool update();
 
+    /// What panes keep between frames: nothing of the scene.
+    struct PaneState {
+        std::string nodeFilter, resourceFilter, settingFilter;
+        size_t messagesSeen = 0;
+    } panes;
+
     // --- what leaves the editor; each says in the log what it did ---
     void saveScreenshot(const std::string& path);
     void saveExr(const std::string& path);
@@ -55,16 +60,15 @@ public:
     [[nodiscard]] std::string captureLine() const;
 
 private:
-    Session(Scene& scene, Renderer& renderer, Messages& messages, const EditorOptions& options);
-    Outcome applyOptions();
-    Outcome assign(const std::string& assignment, const std::string& origin);
     [[nodiscard]] int cameraNode() const {
         return request.cameraNode != kNone ? request.cameraNode : scene_.activeCamera;
     }
     [[nodiscard]] double sceneSize() const;
+    [[nodiscard]] std::string changedSettings() const;
 
-    Scene& scene_;
-    Renderer& renderer_;
+    RenderSession& rendering_;
+    Scene& scene_;       // of rendering_
+    Renderer& renderer_; // of rendering_
     Messages& messages_;
     EditorOptions options_;
     std::string sceneFile_;
@@ -72,9 +76,7 @@ private:
     LivePicture picture_;
     CameraController camera_;
     bool free_ = false;
-    std::optional<double> yfov_;                        // of --pose
-    std::map<std::string, std::string> settingsOfFile_; // key → text after the scene's own settings
-    std::string giOfFile_ = "auto";
+    std::optional<double> yfov_; // of --pose
 };
 
 /// The text as one word of a shell's command line.

@@ -10,7 +10,6 @@
 #include <imgui.h>
 
 #include "gl/screen.h"
-#include "layout.h"
 
 namespace tyndall::editor {
 namespace fs = std::filesystem;
@@ -86,13 +85,13 @@ std::string layoutFile() {
     return error ? std::string() : (folder / "imgui.ini").string();
 }
 
-UserInterface::UserInterface(gl::Window& window, bool keepLayout)
+UserInterface::UserInterface(gl::Window& window, Layout& layout, bool keepLayout)
     : layoutFile_(keepLayout ? layoutFile() : std::string()) {
     IMGUI_CHECKVERSION();
     ImGui::CreateContext();
     ImGuiIO& io = ImGui::GetIO();
     io.IniFilename = layoutFile_.empty() ? nullptr : layoutFile_.c_str();
-    rememberLayout();
+    layout.remember();
     float scale = 1, vertical = 1;
     glfwGetWindowContentScale(window.handle(), &scale, &vertical);
     scale = std::clamp(scale, 1.0f, 4.0f);

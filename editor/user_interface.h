@@ -5,13 +5,14 @@
 
 #include "core/math.h"
 #include "gl/window.h"
+#include "layout.h"
 
 namespace tyndall::editor {
 
 class UserInterface {
 public:
-    /// `keepLayout`: read it from and write it to layoutFile(). The window outlives this.
-    UserInterface(gl::Window& window, bool keepLayout);
+    /// `keepLayout`: read it from and write it to layoutFile(). Window and layout outlive this.
+    UserInterface(gl::Window& window, Layout& layout, bool keepLayout);
     ~UserInterface();
     UserInterface(const UserInterface&) = delete;
     UserInterface& operator=(const UserInterface&) = delete;

@@ -57,6 +57,16 @@ bool real(const SettingDesc& field, const void* values, std::string& changed) {
     return true;
 }
 
+/// Takes effect when it is entered: half a word is seldom a value.
+bool words(const SettingDesc& field, const void* values, std::string& changed) {
+    auto value = valueOf<SettingText>(field, values);
+    if (!ImGui::InputText("##value", value.bytes, sizeof value.bytes,
+                          ImGuiInputTextFlags_EnterReturnsTrue))
+        return false;
+    changed = value.view();
+    return true;
+}
+
 } // namespace
 
 void text(const std::string& value) {
@@ -86,6 +96,7 @@ bool settingWidget(const SettingDesc& field, const void* values, float width,
     case SettingType::Int: return integer(field, values, changed);
     case SettingType::Float: return real(field, values, changed);
     case SettingType::Enum: return choice(field, values, changed);
+    case SettingType::Text: return words(field, values, changed);
     }
     return false;
 }

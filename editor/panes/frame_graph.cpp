@@ -65,7 +65,7 @@ void drawInspectSettings(Session& session) {
 }
 
 void drawResources(Session& session) {
-    static std::string filter;
+    std::string& filter = session.panes.resourceFilter;
     const fg::CompiledGraph& graph = session.renderer().graph();
     if (session.request.inspect.empty()) {
         ImGui::SetNextItemWidth(-1);

@@ -35,8 +35,8 @@ void drawLog(Session& session) {
                     entry.count > 1 ? fmt::format("{} ({} times)", entry.text, entry.count)
                                     : entry.text);
     ImGui::PopTextWrapPos();
-    static size_t seen = 0; // follow new messages
-    if (messages.total() != seen) ImGui::SetScrollHereY(1);
+    size_t& seen = session.panes.messagesSeen;
+    if (messages.total() != seen) ImGui::SetScrollHereY(1); // follow new messages
     seen = messages.total();
     ImGui::EndChild();
 }

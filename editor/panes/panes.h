@@ -1,6 +1,6 @@
 #pragma once
-// The panes: one function and one file each. A pane draws itself into the child window that the layout has opened for it, and
-// keeps nothing of the scene between frames.
+// The panes: one function and one file each. A pane draws itself into the child window that the layout has opened for it; what it
+// keeps between frames is in Session::panes.
 
 #include "session.h"
 

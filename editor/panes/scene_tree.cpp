@@ -80,7 +80,7 @@ private:
 } // namespace
 
 void drawSceneTree(Session& session) {
-    static std::string filter;
+    std::string& filter = session.panes.nodeFilter;
     ImGui::SetNextItemWidth(-1);
     ImGui::InputTextWithHint("##filter", "find by name or kind", &filter);
     if (!ImGui::BeginTable("nodes", 3, ImGuiTableFlags_ScrollY | ImGuiTableFlags_RowBg)) return;

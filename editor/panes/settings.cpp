@@ -11,22 +11,12 @@
 namespace tyndall::editor {
 namespace {
 
-std::string defaultText(const SettingDesc& field) {
-    switch (field.type) {
-    case SettingType::Bool: return field.defaultValue != 0 ? "true" : "false";
-    case SettingType::Int: return std::to_string(int(field.defaultValue));
-    case SettingType::Float: return fmt::format("{}", float(field.defaultValue));
-    case SettingType::Enum: return field.enumNames[size_t(field.defaultValue)];
-    }
-    return {};
-}
-
 std::string helpText(const SettingDesc& field) {
     std::string help = fmt::format("{}\n{}", field.help, field.key);
     if (field.type == SettingType::Int || field.type == SettingType::Float)
         help += fmt::format("\n{:g} to {:g}{}{}", field.minimum, field.maximum,
                             *field.unit ? " " : "", field.unit);
-    return help + "\nDefault: " + defaultText(field);
+    return help + "\nDefault: " + settingDefaultText(field);
 }
 
 /// Settings whose keys begin with the same word, whoever registered them.
@@ -57,7 +47,7 @@ void drawSetting(Session& session, const SettingDesc& field, const void* values)
     ImGui::TableNextColumn();
     ImGui::PushID(field.key);
     ImGui::AlignTextToFramePadding();
-    const std::string now = settingToText(field, values), standard = defaultText(field);
+    const std::string now = settingToText(field, values), standard = settingDefaultText(field);
     const bool changedBefore = now != standard;
     changedBefore ? coloredText(kWarn, field.name) : text(field.name);
     tooltip(helpText(field));
@@ -104,7 +94,7 @@ void drawPresets(Session& session) {
 } // namespace
 
 void drawSettings(Session& session) {
-    static std::string filter;
+    std::string& filter = session.panes.settingFilter;
     drawPresets(session);
     ImGui::SetNextItemWidth(-1);
     ImGui::InputTextWithHint("##filter", "find a setting", &filter);

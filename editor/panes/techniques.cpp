@@ -26,9 +26,12 @@ const char* meaning(Term term) {
 
 void drawTechniqueChoice(Session& session) {
     ImGui::SetNextItemWidth(-1);
-    if (!ImGui::BeginCombo("##technique", session.request.gi.c_str())) return;
+    const std::string chosen = session.technique();
+    if (!ImGui::BeginCombo("##technique", chosen.c_str())) return;
     const auto offer = [&](const std::string& name, const std::string& help) {
-        if (ImGui::Selectable(name.c_str(), session.request.gi == name)) session.request.gi = name;
+        if (ImGui::Selectable(name.c_str(), chosen == name) && chosen != name)
+            session.edit(changeSettings(session.settings(), "use the technique " + name,
+                                        {{kTechniqueSetting, name}}));
         tooltip(help);
     };
     offer("auto", "Each term by whoever computes it best.");

@@ -27,7 +27,14 @@ void storeNumber(const SettingDesc& field, void* values, double number) {
     case SettingType::Int:
     case SettingType::Enum: store<int32_t>(field, values, int32_t(number)); break;
     case SettingType::Float: store<float>(field, values, float(number)); break;
+    case SettingType::Text: break; // no number
     }
+}
+
+void storeText(const SettingDesc& field, void* values, std::string_view text) {
+    SettingText stored{};
+    text.copy(stored.bytes, SettingText::kLongest);
+    store(field, values, stored);
 }
 
 std::string numberText(double value) {
@@ -72,6 +79,13 @@ size_t editDistance(std::string_view a, std::string_view b) {
     return row[b.size()];
 }
 
+/// The error is that of settingFromText(); the values stay as they are.
+Result<void> checkText(SettingDesc field, std::string_view text) {
+    alignas(8) char scratch[sizeof(SettingText)] = {};
+    field.offset = 0;
+    return settingFromText(field, scratch, text);
+}
+
 } // namespace
 
 std::string_view qualityName(Quality quality) { return kQualityNames[size_t(quality)]; }
@@ -106,6 +120,18 @@ std::string settingToText(const SettingDesc& field, const void* values) {
         CHECK(index >= 0 && uint32_t(index) < field.enumCount, field.key);
         return field.enumNames[index];
     }
+    case SettingType::Text: return std::string(load<SettingText>(field, values).view());
+    }
+    return {};
+}
+
+std::string settingDefaultText(const SettingDesc& field) {
+    switch (field.type) {
+    case SettingType::Bool: return field.defaultValue != 0 ? "true" : "false";
+    case SettingType::Int: return std::to_string(int32_t(field.defaultValue));
+    case SettingType::Float: return floatText(float(field.defaultValue));
+    case SettingType::Enum: return field.enumNames[size_t(field.defaultValue)];
+    case SettingType::Text: return field.defaultText;
     }
     return {};
 }
@@ -128,6 +154,14 @@ Result<void> settingFromText(const SettingDesc& field, void* values, std::string
         return Error{"setting '" + std::string(field.key) + "' = '" + std::string(text) +
                      "' is unknown: it takes " + enumList(field)};
     }
+    if (field.type == SettingType::Text) {
+        if (text.size() > SettingText::kLongest || text.find('\0') != std::string_view::npos)
+            return Error{"setting '" + std::string(field.key) + "' = '" +
+                         std::string(text.substr(0, 32)) + "...' is too long: it takes up to " +
+                         std::to_string(SettingText::kLongest) + " characters"};
+        storeText(field, values, text);
+        return {};
+    }
     double number = 0;
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
     const bool whole = field.type != SettingType::Int || number == std::floor(number);
@@ -147,6 +181,8 @@ void SettingsRegistry::add(SettingsGroup group) {
               "setting registered twice: " + std::string(field.key));
         CHECK(field.defaultValue >= field.minimum && field.defaultValue <= field.maximum,
               field.key);
+        CHECK(field.type != SettingType::Text || checkText(field, field.defaultText).ok(),
+              field.key);
         reset(field, group.values);
     }
     groups_.push_back(group);
@@ -156,10 +192,7 @@ void SettingsRegistry::addPreset(std::span<const PresetEntry> entries) {
     for (const PresetEntry& entry : entries) {
         const Found found = find(entry.key);
         CHECK(found.field != nullptr, "preset for an unknown setting: " + std::string(entry.key));
-        alignas(8) char scratch[8] = {};
-        SettingDesc alone = *found.field;
-        alone.offset = 0;
-        const Result<void> parsed = settingFromText(alone, scratch, entry.value);
+        const Result<void> parsed = checkText(*found.field, entry.value);
         CHECK(parsed.ok(), parsed.ok() ? "" : parsed.message());
         presets_.push_back(entry);
     }
@@ -198,7 +231,10 @@ Result<std::string> SettingsRegistry::get(std::string_view key) const {
 }
 
 void SettingsRegistry::reset(const SettingDesc& field, void* values) {
-    storeNumber(field, values, field.defaultValue);
+    if (field.type == SettingType::Text)
+        storeText(field, values, field.defaultText);
+    else
+        storeNumber(field, values, field.defaultValue);
 }
 
 void SettingsRegistry::resetAll() {
@@ -218,12 +254,8 @@ std::vector<std::string> SettingsRegistry::differences() const {
     std::vector<std::string> result;
     for (const SettingsGroup& group : groups_)
         for (const SettingDesc& field : group.fields) {
-            alignas(8) char scratch[8] = {};
-            SettingDesc alone = field;
-            alone.offset = 0;
-            storeNumber(alone, scratch, field.defaultValue);
             const std::string now = settingToText(field, group.values);
-            if (now != settingToText(alone, scratch))
+            if (now != settingDefaultText(field))
                 result.push_back(std::string(field.key) + "=" + now);
         }
     return result;

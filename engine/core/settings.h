@@ -19,6 +19,14 @@ enum class SettingType : uint32_t {
     Int = 1,   // int32_t
     Float = 2, // float
     Enum = 3,  // enum class : int32_t with values 0..enumCount-1
+    Text = 4,  // SettingText
+};
+
+/// A short text as plain data, so that a settings struct that has one can still cross the plugin boundary.
+struct SettingText {
+    static constexpr size_t kLongest = 255; // bytes before the final zero
+    char bytes[kLongest + 1];
+    [[nodiscard]] std::string_view view() const { return bytes; }
 };
 
 /// One field of a settings struct. All pointers are to static storage.
@@ -29,10 +37,11 @@ struct SettingDesc {
     const char* help; // one sentence
     SettingType type;
     uint32_t offset;         // of the field in its struct, bytes
-    double minimum, maximum; // inclusive; for Bool and Enum 0 and the largest value
+    double minimum, maximum; // inclusive; for Bool and Enum 0 and the largest value; not for Text
     double defaultValue;
     const char* const* enumNames; // enumCount names, or null
     uint32_t enumCount;
+    const char* defaultText; // of a Text, else null
 };
 
 /// A table and the struct it describes.
@@ -60,8 +69,8 @@ public:
     void add(SettingsGroup group);
     void addPreset(std::span<const PresetEntry> entries);
 
-    /// Sets `key` from text: "true/false/on/off/1/0", a number in range, or an enum's name.
-    /// Errors: unknown key (with the nearest one), not a number, out of range (with the range).
+    /// Sets `key` from text: "true/false/on/off/1/0", a number in range, an enum's name, or a text as it is.
+    /// Errors: unknown key (with the nearest one), not a number, out of range (with the range), a text that is too long.
     Result<void> set(std::string_view key, std::string_view text);
     /// "KEY=VALUE" as on the command line.
     Result<void> assign(std::string_view assignment);
@@ -89,6 +98,8 @@ private:
 
 /// The field's value as text; Float round-trips.
 std::string settingToText(const SettingDesc& field, const void* values);
+/// The default as settingToText() would give it.
+std::string settingDefaultText(const SettingDesc& field);
 /// See SettingsRegistry::set.
 Result<void> settingFromText(const SettingDesc& field, void* values, std::string_view text);
 
@@ -99,13 +110,15 @@ std::string nearestName(std::string_view word, std::span<const std::string_view>
 //   TYNDALL_FLOAT(MarchSettings, stepScale, "media.march.stepScale", "Step", "voxels", 0.05, 16, 1, "…")
 // clang-format off
 #define TYNDALL_BOOL(STRUCT, FIELD, KEY, NAME, DEFAULT, HELP) \
-    ::tyndall::SettingDesc{KEY, NAME, "", HELP, ::tyndall::SettingType::Bool, uint32_t(offsetof(STRUCT, FIELD)), 0, 1, (DEFAULT) ? 1.0 : 0.0, nullptr, 0}
+    ::tyndall::SettingDesc{KEY, NAME, "", HELP, ::tyndall::SettingType::Bool, uint32_t(offsetof(STRUCT, FIELD)), 0, 1, (DEFAULT) ? 1.0 : 0.0, nullptr, 0, nullptr}
 #define TYNDALL_INT(STRUCT, FIELD, KEY, NAME, UNIT, MIN, MAX, DEFAULT, HELP) \
-    ::tyndall::SettingDesc{KEY, NAME, UNIT, HELP, ::tyndall::SettingType::Int, uint32_t(offsetof(STRUCT, FIELD)), double(MIN), double(MAX), double(DEFAULT), nullptr, 0}
+    ::tyndall::SettingDesc{KEY, NAME, UNIT, HELP, ::tyndall::SettingType::Int, uint32_t(offsetof(STRUCT, FIELD)), double(MIN), double(MAX), double(DEFAULT), nullptr, 0, nullptr}
 #define TYNDALL_FLOAT(STRUCT, FIELD, KEY, NAME, UNIT, MIN, MAX, DEFAULT, HELP) \
-    ::tyndall::SettingDesc{KEY, NAME, UNIT, HELP, ::tyndall::SettingType::Float, uint32_t(offsetof(STRUCT, FIELD)), double(MIN), double(MAX), double(DEFAULT), nullptr, 0}
+    ::tyndall::SettingDesc{KEY, NAME, UNIT, HELP, ::tyndall::SettingType::Float, uint32_t(offsetof(STRUCT, FIELD)), double(MIN), double(MAX), double(DEFAULT), nullptr, 0, nullptr}
 #define TYNDALL_ENUM(STRUCT, FIELD, KEY, NAME, NAMES, DEFAULT, HELP) \
-    ::tyndall::SettingDesc{KEY, NAME, "", HELP, ::tyndall::SettingType::Enum, uint32_t(offsetof(STRUCT, FIELD)), 0, double(::std::size(NAMES) - 1), double(int32_t(DEFAULT)), NAMES, uint32_t(::std::size(NAMES))}
+    ::tyndall::SettingDesc{KEY, NAME, "", HELP, ::tyndall::SettingType::Enum, uint32_t(offsetof(STRUCT, FIELD)), 0, double(::std::size(NAMES) - 1), double(int32_t(DEFAULT)), NAMES, uint32_t(::std::size(NAMES)), nullptr}
+#define TYNDALL_TEXT(STRUCT, FIELD, KEY, NAME, DEFAULT, HELP) \
+    ::tyndall::SettingDesc{KEY, NAME, "", HELP, ::tyndall::SettingType::Text, uint32_t(offsetof(STRUCT, FIELD)), 0, 0, 0, nullptr, 0, DEFAULT}
 // clang-format on
 
 } // namespace tyndall

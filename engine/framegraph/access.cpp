@@ -17,7 +17,9 @@ constexpr uint32_t kCommand = 0x40;
 constexpr uint32_t kTextureUpdate = 0x100;
 constexpr uint32_t kBufferUpdate = 0x200;
 constexpr uint32_t kFramebuffer = 0x400;
+constexpr uint32_t kTransformFeedback = 0x800;
 constexpr uint32_t kShaderStorage = 0x2000;
+constexpr uint32_t kQueryBuffer = 0x8000;
 
 struct AccessInfo {
     const char* name;
@@ -37,6 +39,7 @@ constexpr AccessInfo kAccesses[] = {
     {"color target", true, kFramebuffer, 0},
     {"depth target", true, kFramebuffer, 0},
     {"transfer write", true, kTextureUpdate, kBufferUpdate},
+    {"capture", true, 0, kTransformFeedback | kQueryBuffer},
 };
 
 const AccessInfo& info(Access access) {

@@ -20,6 +20,7 @@ enum class Access : uint32_t {
     ColorTarget = 8,
     DepthTarget = 9,
     TransferWrite = 10, // copy destination, clear
+    Capture = 11,       // transform feedback, and the number of what it wrote
 };
 
 bool isWrite(Access access);

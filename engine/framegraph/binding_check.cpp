@@ -15,12 +15,15 @@ bool allows(Access declared, Touch touch) {
     case Touch::WriteStorage: return declared == Access::StorageWrite;
     case Touch::UniformBlock: return declared == Access::Uniform;
     // A pass may write its own arguments.
-    case Touch::Indirect: return declared == Access::Indirect || declared == Access::StorageWrite;
+    case Touch::Indirect:
+        return declared == Access::Indirect || declared == Access::StorageWrite ||
+               declared == Access::Capture;
     case Touch::ColorAttachment: return declared == Access::ColorTarget;
     case Touch::DepthAttachment: return declared == Access::DepthTarget;
     case Touch::DepthTest: return declared == Access::DepthTarget || declared == Access::DepthRead;
     case Touch::TransferRead: return declared == Access::TransferRead;
     case Touch::TransferWrite: return isWrite(declared);
+    case Touch::Capture: return declared == Access::Capture;
     }
     return false;
 }
@@ -37,6 +40,7 @@ const char* wanted(Touch touch) {
     case Touch::DepthTest: return "a read as depth read";
     case Touch::TransferRead: return "a read as transfer read";
     case Touch::TransferWrite: return "a write";
+    case Touch::Capture: return "a write as capture";
     }
     return "";
 }

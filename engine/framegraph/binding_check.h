@@ -20,6 +20,7 @@ enum class Touch : uint32_t {
     DepthTest = 7,       // without
     TransferRead = 8,
     TransferWrite = 9, // clear, copy, upload: any declared write allows it
+    Capture = 10,      // transform feedback, and its count
 };
 
 /// Empty when pass number `pass` declared this; else a sentence that names the pass, the resource and `place` (the name in the

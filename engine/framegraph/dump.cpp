@@ -154,10 +154,12 @@ std::string barrierNames(uint32_t bits) {
     static constexpr struct {
         uint32_t bit;
         const char* name;
-    } kNames[] = {{0x1, "vertex"},           {0x2, "index"},           {0x4, "uniform"},
-                  {0x8, "texture-fetch"},    {0x20, "image"},          {0x40, "command"},
-                  {0x100, "texture-update"}, {0x200, "buffer-update"}, {0x400, "framebuffer"},
-                  {0x2000, "storage"}};
+    } kNames[] = {{0x1, "vertex"},           {0x2, "index"},
+                  {0x4, "uniform"},          {0x8, "texture-fetch"},
+                  {0x20, "image"},           {0x40, "command"},
+                  {0x100, "texture-update"}, {0x200, "buffer-update"},
+                  {0x400, "framebuffer"},    {0x800, "transform-feedback"},
+                  {0x2000, "storage"},       {0x8000, "query-buffer"}};
     std::string text;
     for (const auto& entry : kNames)
         if (bits & entry.bit) append(text, "{}{}", text.empty() ? "" : " ", entry.name);

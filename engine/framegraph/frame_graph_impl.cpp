@@ -397,7 +397,7 @@ void FrameGraphImpl::checkAccess(uint32_t resource, Access access, bool wantWrit
             access == Access::DepthRead)
             problem = "needs a texture, and this is a buffer";
     } else if (access == Access::Uniform || access == Access::Indirect ||
-               access == Access::Vertex) {
+               access == Access::Vertex || access == Access::Capture) {
         problem = "needs a buffer, and this is a texture";
     } else if (depth && (access == Access::ColorTarget || access == Access::StorageRead ||
                          access == Access::StorageWrite)) {

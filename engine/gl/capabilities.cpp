@@ -48,6 +48,7 @@ Limits queryLimits(bool anisotropic) {
     limits.computeGroups = integer3(GL_MAX_COMPUTE_WORK_GROUP_COUNT);
     limits.computeGroupSize = integer3(GL_MAX_COMPUTE_WORK_GROUP_SIZE);
     limits.colorAttachments = integer(GL_MAX_COLOR_ATTACHMENTS);
+    limits.patchVertices = integer(GL_MAX_PATCH_VERTICES);
     glGetQueryiv(GL_TIMESTAMP, GL_QUERY_COUNTER_BITS, &limits.timestampBits);
     if (anisotropic) glGetFloatv(GL_MAX_TEXTURE_MAX_ANISOTROPY_EXT, &limits.anisotropy);
     limits.labelLength = integer(GL_MAX_LABEL_LENGTH);

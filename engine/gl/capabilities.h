@@ -31,6 +31,7 @@ struct Limits {
     ivec3 computeGroups{0};     // of one dispatch
     ivec3 computeGroupSize{0};
     int colorAttachments = 0;
+    int patchVertices = 0;   // of one patch
     int timestampBits = 0;   // 0: no GPU times
     float anisotropy = 1.0f; // 1: no anisotropic filter
     int labelLength = 0;     // bytes

@@ -38,7 +38,7 @@ std::string describe(std::span<const Attachment> colors, const Attachment* depth
     };
     for (const Attachment& color : colors) add(color);
     if (depth != nullptr) add(*depth);
-    return text;
+    return text.empty() ? "no targets" : text;
 }
 
 constexpr uint64_t kKeptFrames = 16;
@@ -48,7 +48,6 @@ constexpr uint64_t kKeptFrames = 16;
 GLuint FramebufferCache::get(std::span<const Attachment> colors, const Attachment* depth) {
     CHECK(colors.size() <= kMostColors,
           fmt::format("{} colour attachments, of at most {}", colors.size(), kMostColors));
-    CHECK(!colors.empty() || depth != nullptr, "a framebuffer needs an attachment");
     Key key{};
     const auto part = [](const Attachment& attachment) {
         CHECK(attachment.texture != nullptr && *attachment.texture, "an attachment is empty");
@@ -69,6 +68,10 @@ GLuint FramebufferCache::get(std::span<const Attachment> colors, const Attachmen
         attach(id, drawBuffers[i], colors[i]);
     }
     if (depth != nullptr) attach(id, GL_DEPTH_ATTACHMENT, *depth);
+    if (colors.empty() && depth == nullptr) { // OpenGL 4.5, section 9.2.1
+        glNamedFramebufferParameteri(id, GL_FRAMEBUFFER_DEFAULT_WIDTH, 1);
+        glNamedFramebufferParameteri(id, GL_FRAMEBUFFER_DEFAULT_HEIGHT, 1);
+    }
     glNamedFramebufferDrawBuffers(id, GLsizei(colors.size()), drawBuffers.data());
     entry.object.label(describe(colors, depth));
     const GLenum status = glCheckNamedFramebufferStatus(id, GL_DRAW_FRAMEBUFFER);

@@ -27,7 +27,8 @@ public:
     FramebufferCache& operator=(FramebufferCache&&) = default;
 
     /// The GL name of a framebuffer with these colour attachments, in order, drawn to all of them, and `depth` if not
-    /// null. CHECKs: at least one attachment, at most eight colours, and that the driver calls it complete.
+    /// null. Without any it is one of 1x1 pixels that keeps nothing, for draws that are not rasterised: a context without a
+    /// surface has no complete framebuffer of its own. CHECKs: at most eight colours, and that the driver calls it complete.
     GLuint get(std::span<const Attachment> colors, const Attachment* depth = nullptr);
     /// Drops framebuffers with this texture; needed before a texture goes only for its memory to be freed at once.
     void forget(const Texture& texture);

@@ -123,6 +123,29 @@ Result<void> PendingProgram::checkStages() const {
     return {};
 }
 
+/// What `program` knows of its stages one by one.
+void PendingProgram::describeStages(Program& program) const {
+    for (const Stage& stage : stages_) {
+        GLint type = 0;
+        glGetShaderiv(stage.shader, GL_SHADER_TYPE, &type);
+        collectIdentifiers(stage.source.text, program.identifiers_);
+        const std::string remarks = mapShaderMessages(
+            driverLog(stage.shader, glGetShaderiv, glGetShaderInfoLog), stage.source);
+        if (!remarks.empty())
+            program.warnings_ += (program.warnings_.empty() ? "" : "\n") + remarks;
+        if (GLenum(type) == GL_FRAGMENT_SHADER) program.hasFragments_ = true;
+        if (GLenum(type) == GL_TESS_EVALUATION_SHADER)
+            program.tessellatesTo_ = tessellatedPrimitive(object_.id());
+        if (GLenum(type) != GL_COMPUTE_SHADER) continue;
+        GLint size[3] = {};
+        glGetProgramiv(object_.id(), GL_COMPUTE_WORK_GROUP_SIZE, size);
+        program.localSize_ = uvec3(size[0], size[1], size[2]);
+    }
+    std::ranges::sort(program.identifiers_);
+    program.identifiers_.erase(std::ranges::unique(program.identifiers_).begin(),
+                               program.identifiers_.end());
+}
+
 Result<Program> PendingProgram::finish() {
     CHECK(object_, "finish() of an empty PendingProgram");
     PendingProgram self = std::move(*this);
@@ -139,22 +162,10 @@ Result<Program> PendingProgram::finish() {
     program.resources_ = reflectAndBind(self.object_.id());
     if (Result<void> limits = checkBindingLimits(self.name_, program.resources_); !limits)
         return limits.error();
-    for (const Stage& stage : self.stages_) {
-        GLint type = 0;
-        glGetShaderiv(stage.shader, GL_SHADER_TYPE, &type);
-        collectIdentifiers(stage.source.text, program.identifiers_);
-        const std::string remarks = mapShaderMessages(
-            driverLog(stage.shader, glGetShaderiv, glGetShaderInfoLog), stage.source);
-        if (!remarks.empty())
-            program.warnings_ += (program.warnings_.empty() ? "" : "\n") + remarks;
-        if (GLenum(type) != GL_COMPUTE_SHADER) continue;
-        GLint size[3] = {};
-        glGetProgramiv(self.object_.id(), GL_COMPUTE_WORK_GROUP_SIZE, size);
-        program.localSize_ = uvec3(size[0], size[1], size[2]);
-    }
-    std::ranges::sort(program.identifiers_);
-    program.identifiers_.erase(std::ranges::unique(program.identifiers_).begin(),
-                               program.identifiers_.end());
+    const Result<int> stride = captureStride(self.name_, self.object_.id());
+    if (!stride) return stride.error();
+    program.captureStride_ = *stride;
+    self.describeStages(program);
     self.deleteShaders();
     program.object_ = std::move(self.object_);
     program.object_.label(program.name_);

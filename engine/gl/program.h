@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -62,7 +63,8 @@ Result<GLenum> stageOfFile(std::string_view path);
 class Program {
 public:
     Program() = default;
-    /// Compiles and links. Errors: the driver's messages, with files and lines.
+    /// Compiles and links. Errors: the driver's messages, with files and lines; transform feedback into another buffer
+    /// than the one with the number 0.
     static Result<Program> build(std::string_view name, std::span<const StageSource> stages);
 
     [[nodiscard]] GLuint id() const { return object_.id(); }
@@ -71,6 +73,12 @@ public:
     /// Invocations of a group; zero for raster programs.
     [[nodiscard]] uvec3 localSize() const { return localSize_; }
     [[nodiscard]] bool isCompute() const { return localSize_.x > 0; }
+    /// False where the program ends before rasterisation, or leaves only depth.
+    [[nodiscard]] bool hasFragments() const { return hasFragments_; }
+    /// What its tessellation makes of patches: GL_POINTS, GL_LINES or GL_TRIANGLES; nothing where it has none.
+    [[nodiscard]] std::optional<GLenum> tessellatesTo() const { return tessellatesTo_; }
+    /// Bytes that transform feedback captures of a vertex, as the shader's xfb qualifiers say; 0: it captures nothing.
+    [[nodiscard]] int captureStride() const { return captureStride_; }
 
     /// What the driver's compiler remarked, with files and lines; empty where it had nothing to say.
     [[nodiscard]] const std::string& warnings() const { return warnings_; }
@@ -94,6 +102,9 @@ private:
     std::string name_;
     std::string warnings_;
     uvec3 localSize_{0};
+    bool hasFragments_ = false;
+    std::optional<GLenum> tessellatesTo_;
+    int captureStride_ = 0; // bytes
     std::vector<ProgramResource> resources_;
     std::vector<uint64_t> identifiers_; // hashes, sorted
 };
@@ -119,6 +130,7 @@ private:
         ExpandedShader source;
     };
     Result<void> checkStages() const;
+    void describeStages(Program& program) const;
     void deleteShaders();
     std::string name_;
     std::vector<Stage> stages_;

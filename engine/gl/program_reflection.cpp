@@ -173,4 +173,23 @@ Result<void> checkBindingLimits(std::string_view name, std::span<const ProgramRe
     return {};
 }
 
+Result<int> captureStride(std::string_view name, GLuint program) {
+    const int buffers = activeCount(program, GL_TRANSFORM_FEEDBACK_BUFFER);
+    if (buffers == 0) return 0;
+    if (buffers > 1 || property(program, GL_TRANSFORM_FEEDBACK_BUFFER, 0, GL_BUFFER_BINDING) != 0)
+        return Error{fmt::format(
+            "shader '{}' captures into several buffers, or not into number 0: give all its captured outputs "
+            "`xfb_buffer = 0`, or none",
+            name)};
+    return property(program, GL_TRANSFORM_FEEDBACK_BUFFER, 0, GL_TRANSFORM_FEEDBACK_BUFFER_STRIDE);
+}
+
+GLenum tessellatedPrimitive(GLuint program) {
+    GLint points = GL_FALSE, mode = GL_TRIANGLES;
+    glGetProgramiv(program, GL_TESS_GEN_POINT_MODE, &points);
+    glGetProgramiv(program, GL_TESS_GEN_MODE, &mode);
+    if (points == GL_TRUE) return GL_POINTS;
+    return mode == GL_ISOLINES ? GL_LINES : GL_TRIANGLES;
+}
+
 } // namespace tyndall::gl

@@ -14,5 +14,9 @@ namespace tyndall::gl {
 std::vector<ProgramResource> reflectAndBind(GLuint program);
 /// Errors: more bindings of a kind than this GPU has.
 Result<void> checkBindingLimits(std::string_view name, std::span<const ProgramResource> resources);
+/// Bytes that a vertex leaves in transform feedback's buffer 0; 0 where the shader captures nothing. Errors: it captures into another.
+Result<int> captureStride(std::string_view name, GLuint program);
+/// GL_POINTS, GL_LINES or GL_TRIANGLES, of a linked program with a tessellation evaluation shader.
+GLenum tessellatedPrimitive(GLuint program);
 
 } // namespace tyndall::gl

@@ -11,13 +11,14 @@
 
 namespace tyndall {
 
+struct ParticleSet;
+
 enum class MediumKind : int32_t {
     Everywhere = 0, // homogeneous, unbounded
     Box = 1,        // homogeneous; `size` is the full extent, centred at the node
     Sphere = 2,     // homogeneous; `size` holds the diameters (an ellipsoid, where they differ)
     Height = 3,     // exp(-y/scaleHeight) above the node's origin, 1 below, along the node's +Y
-    Grid = 4,       // density times a grid's value
-    Particles = 5,  // described, not yet rendered
+    Grid = 4,       // density times a grid's value; the grid is a file's, or of particles
 };
 
 enum class PhaseFunction : int32_t { HenyeyGreenstein = 0, Rayleigh = 1, CornetteShanks = 2 };
@@ -35,6 +36,8 @@ struct Medium {
     float temperatureScale = 0; // > 0: blackbody emission from `temperature`, times this
     std::shared_ptr<const BrickGrid> density;     // Grid
     std::shared_ptr<const BrickGrid> temperature; // Grid, kelvin; may be null
+    /// What the grids are made of (setParticles in particle_grids.h); null for grids from elsewhere.
+    std::shared_ptr<const ParticleSet> particles;
 
     // As written in the scene file, for saving.
     std::string file, gridName, temperatureGridName;

@@ -1,5 +1,5 @@
 #pragma once
-// Particle media as data: read from CSV files or generated. Rendering them is a technique's business.
+// Particle media as data: read from CSV files or generated. particle_grids.h makes bricks of them.
 
 #include <cstdint>
 #include <filesystem>
@@ -11,12 +11,12 @@
 
 namespace tyndall {
 
-/// A ball of matter; its density multiplies the medium's coefficients.
+/// A ball of matter. Its density, the mean over the ball, multiplies the medium's coefficients; particle_grids.h says how it is spread.
 struct Particle {
     vec3 position{0};      // metres, the medium's node space
     float radius = 0;      // metres, > 0
     float density = 1;     // ≥ 0
-    float temperature = 0; // kelvin, ≥ 0; 0: does not glow
+    float temperature = 0; // kelvin, ≥ 0
 };
 
 struct ParticleSet {

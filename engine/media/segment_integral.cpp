@@ -165,7 +165,6 @@ double mediumDensity(const Medium& medium, const dmat4& worldFromMedium, const d
         return medium.density ? medium.density->sample(local(
                                     glm::inverse(worldFromMedium * medium.density->worldFromIndex)))
                               : 0;
-    case MediumKind::Particles: return 0;
     }
     return 0;
 }
@@ -190,7 +189,6 @@ double densityLength(const Medium& medium, const dmat4& worldFromMedium,
                    ? integrateGrid(*medium.density,
                                    worldFromMedium * medium.density->worldFromIndex, segment)
                    : 0;
-    case MediumKind::Particles: return 0;
     }
     return 0;
 }

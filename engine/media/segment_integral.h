@@ -24,7 +24,7 @@ struct RaySegment {
                                    const dvec3& position);
 
 /// ∫ density dt over the segment, metres. Closed form for the homogeneous shapes and for height fog; through a grid
-/// exact up to rounding, see integrateGrid. Particles give 0. CHECKs: unit direction.
+/// exact up to rounding, see integrateGrid. CHECKs: unit direction.
 [[nodiscard]] double densityLength(const Medium& medium, const dmat4& worldFromMedium,
                                    const RaySegment& segment);
 

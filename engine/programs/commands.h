@@ -3,8 +3,8 @@
 
 #include <functional>
 
+#include "app/outcome.h"
 #include "core/progress.h"
-#include "programs/outcome.h"
 
 namespace CLI {
 class App;

@@ -7,12 +7,12 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include "app/compare_report.h"
+#include "app/output_file.h"
 #include "core/display_metrics.h"
 #include "core/heat_map.h"
 #include "core/log.h"
 #include "programs/commands.h"
-#include "programs/compare_report.h"
-#include "programs/output_file.h"
 
 namespace tyndall {
 namespace {

@@ -4,9 +4,10 @@
 
 #include <CLI/CLI.hpp>
 
+#include "app/render_session.h"
 #include "framegraph/dump.h"
 #include "programs/commands.h"
-#include "programs/render_session.h"
+#include "programs/console_job.h"
 
 namespace tyndall {
 namespace {
@@ -26,7 +27,8 @@ Outcome runGraph(const GraphOptions& options, const GlobalOptions& global) {
     const Result<fg::DumpFormat> format = fg::parseDumpFormat(options.format);
     if (!format.ok()) return wrongInput("--format: " + format.message());
     std::unique_ptr<RenderSession> session;
-    if (Outcome opened = RenderSession::open(options.render, global.progress(), nullptr, session);
+    ConsoleJob job(global.progress());
+    if (Outcome opened = RenderSession::open(options.render, job.control(), nullptr, session);
         !opened.ok())
         return opened;
     if (const Result<FrameResult> frame = session->renderer().renderFrame(session->request());
@@ -47,6 +49,7 @@ void addGraphCommand(CLI::App& program, Run& run) {
     CLI::App* command = program.add_subcommand(
         "graph", "Print the frame graph: passes, resources, barriers, what is skipped and why");
     addRenderOptions(*command, options->render);
+    addContextOptions(*command, options->render);
     command->add_option("--format", options->format, "text, dot or json (text)")->type_name("NAME");
     command->add_option("-o,--output", options->output, "A file instead of standard output")
         ->type_name("FILE");

@@ -5,10 +5,12 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include "app/info_file.h"
+#include "app/program.h"
 #include "gl/context.h"
 #include "plugin/builtin_plugins.h"
 #include "programs/commands.h"
-#include "programs/info_file.h"
+#include "programs/console_job.h"
 #include "renderer/renderer.h"
 
 namespace tyndall {
@@ -79,16 +81,7 @@ std::string typeText(const SettingDesc& field) {
                            int64_t(field.maximum));
     case SettingType::Float:
         return fmt::format("number, {:g} to {:g}", field.minimum, field.maximum);
-    }
-    return {};
-}
-
-std::string defaultText(const SettingDesc& field) {
-    switch (field.type) {
-    case SettingType::Bool: return field.defaultValue != 0 ? "true" : "false";
-    case SettingType::Enum: return field.enumNames[size_t(field.defaultValue)];
-    case SettingType::Int: return std::to_string(int64_t(field.defaultValue));
-    case SettingType::Float: return fmt::format("{:g}", field.defaultValue);
+    case SettingType::Text: return "text";
     }
     return {};
 }
@@ -99,7 +92,7 @@ std::string settingLines(const SettingsRegistry& registry) {
         for (const SettingDesc& field : group.fields)
             text += fmt::format("{}\n    {}: {}\n    {}{}{}; default {}\n", field.key, field.name,
                                 field.help, typeText(field), *field.unit ? " " : "", field.unit,
-                                defaultText(field));
+                                settingDefaultText(field));
     for (int quality = 0; quality < 4; ++quality) {
         text += fmt::format("--quality {}:\n", qualityName(Quality(quality)));
         for (const PresetEntry& entry : registry.presets())
@@ -120,11 +113,12 @@ std::string techniqueLines(const Renderer& renderer) {
 
 Outcome runInfo(const InfoOptions& options) {
     if (!options.file.empty()) {
-        const Result<std::string> text = describeFile(options.file);
+        ConsoleJob job(ProgressStyle::Quiet);
+        const Result<std::string> text = describeFile(options.file, job.control());
         return text.ok() ? print(*text) : wrongInput(text.message());
     }
     std::string text =
-        fmt::format("tyndall {}, compiled with GCC {}\n", TYNDALL_VERSION, __VERSION__);
+        fmt::format("tyndall {}, compiled with GCC {}\n", programVersion(), __VERSION__);
     if (!options.settings) text += backendLines();
     Result<gl::Context> context = gl::Context::create();
     if (!context.ok()) {

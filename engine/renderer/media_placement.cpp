@@ -103,7 +103,6 @@ bool placeShape(const dmat4& renderFromNode, PlacedMedium& placed) {
         placed.bounds = boxOf(0.5 * medium.size).transformed(renderFromNode);
         break;
     case MediumKind::Grid: return placeGrid(renderFromNode, placed);
-    case MediumKind::Particles: return false;
     }
     placed.data.localFromRender = mat4(inverse);
     return true;
@@ -194,11 +193,6 @@ std::vector<PlacedMedium> placeMedia(const Scene& scene, const dvec3& renderOrig
     for (size_t i = 0; i < scene.nodes.size(); ++i) {
         if (scene.nodes[i].medium == kNone || !visible[i]) continue;
         const Medium& medium = scene.media.at(size_t(scene.nodes[i].medium));
-        if (medium.kind == MediumKind::Particles) {
-            notes.push_back("medium '" + medium.name +
-                            "' is made of particles, which this renderer does not draw");
-            continue;
-        }
         if (!hasEffect(medium)) continue;
         PlacedMedium entry;
         entry.medium = &medium;

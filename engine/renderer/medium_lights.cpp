@@ -298,7 +298,7 @@ MediumEmitters findMediumEmitters(const Scene& scene, const std::vector<dmat4>& 
         if (endless)
             result.notes.push_back(fmt::format(
                 "medium '{}' glows and has no end: it is seen, but lights nothing", node.name));
-        if (endless || medium.kind == MediumKind::Particles) continue;
+        if (endless) continue;
         if (medium.kind == MediumKind::Grid && !medium.density) continue;
         result.emitters.emplace_back(medium, world[i], parts);
         result.nodes.push_back(int(i));

@@ -56,6 +56,7 @@ void Renderer::Impl::registerSettings() {
     settings.add({tyndall::postSettings(), &postSettings});
     settings.add({tyndall::convergeSettings(), &convergeSettings});
     settings.add({tyndall::inspectSettings(), &inspectSettings});
+    settings.add({tyndall::techniqueSettings(), &techniqueSettings});
 }
 
 /// Uploads what changed and makes this frame's view, lights and lists.
@@ -94,10 +95,10 @@ Result<void> Renderer::Impl::updateScene(const FrameRequest& request, const dmat
 std::string Renderer::Impl::averageKey(const FrameRequest& request) const {
     const SceneVersions& v = scene->versions;
     std::string key =
-        fmt::format("{} {} {} {} {} {} {} {} {} | {}x{} {} {} {} {} {} | ", v.structure,
-                    v.transforms, v.meshes, v.materials, v.textures, v.lights, v.media, v.cameras,
-                    v.environment, request.width, request.height, request.cameraNode, request.terms,
-                    request.gi, request.seed, request.time, request.separateTerms);
+        fmt::format("{} {} {} {} {} {} {} {} {} | {}x{} {} {} {} {} | ", v.structure, v.transforms,
+                    v.meshes, v.materials, v.textures, v.lights, v.media, v.cameras, v.environment,
+                    request.width, request.height, request.cameraNode, request.terms, request.seed,
+                    request.time, request.separateTerms);
     const mat4& m = order.view.data.viewFromRender;
     for (int c = 0; c < 4; ++c) key += fmt::format("{} {} {} {} ", m[c].x, m[c].y, m[c].z, m[c].w);
     key += fmt::format("{} {} | {}", request.pose ? request.pose->camera.yfov : 0,
@@ -117,13 +118,6 @@ Result<std::unique_ptr<Renderer>> Renderer::create(gl::Context& context,
     auto impl = std::make_unique<Impl>(context, options);
     impl->registerSettings();
     impl->plugins.addBuiltins(options.builtinPlugins);
-    for (const std::filesystem::path& folder : options.pluginFolders) {
-        std::error_code ignored; // A folder that is not there holds no plugins.
-        for (const auto& entry : std::filesystem::directory_iterator(folder, ignored))
-            if (entry.path().extension() == ".so")
-                if (Result<void> loaded = impl->plugins.load(entry.path()); !loaded)
-                    log::warning(loaded.message());
-    }
     for (const std::filesystem::path& file : options.pluginFiles)
         if (Result<void> loaded = impl->plugins.load(file); !loaded) return loaded.error();
     for (const std::string& failure : impl->plugins.setup(impl->host, impl->settings))
@@ -167,7 +161,7 @@ Result<FrameResult> Renderer::renderFrame(const FrameRequest& request) {
     if (Result<void> updated = r.updateScene(request, worldFromCamera, camera); !updated)
         return updated.error();
     const Result<FramePlan> plan =
-        makePlan(request.gi, request.terms, r.techniques,
+        makePlan(r.techniqueSettings.technique.view(), request.terms, r.techniques,
                  traitsOf(*r.scene, r.surfaces, r.lights, r.media.settings().enabled));
     if (!plan) return plan.error();
 

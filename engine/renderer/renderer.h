@@ -25,8 +25,6 @@ struct RendererOptions {
     std::span<const plugin::EntryPoint> builtinPlugins;
     /// Shared-library plugins to load; one that carries the name of a built-in plugin replaces it. A refusal is an error here.
     std::vector<std::filesystem::path> pluginFiles;
-    /// Folders whose shared libraries are loaded too; a refusal there is a warning.
-    std::vector<std::filesystem::path> pluginFolders;
     /// Every created or skipped resource starts as NaN: nothing that is shown may depend on it.
     bool poison = false;
     /// Counts non-finite and negative texels that each pass writes (FrameReport::passes[i]); slow.
@@ -44,9 +42,8 @@ struct FrameRequest {
     int cameraNode = kNone;         // kNone: the scene's active camera
     std::optional<CameraPose> pose; // replaces cameraNode
     TermSet terms = kAllTerms;      // terms not in here are not rendered
-    std::string gi = "auto"; // as --gi takes it: auto, none, a technique, or TERM=TECHNIQUE,…
-    double time = 0;         // seconds of the scene's clock
-    uint32_t frameIndex = 0; // counts frames; drives jitter and low-discrepancy sequences
+    double time = 0;                // seconds of the scene's clock
+    uint32_t frameIndex = 0;        // counts frames; drives jitter and low-discrepancy sequences
     uint32_t seed = 0;
     bool converge =
         false;            // average this frame with those since the last change of request or scene
@@ -82,7 +79,7 @@ public:
 
     /// Every setting of the engine and of the plugins.
     [[nodiscard]] SettingsRegistry& settings();
-    /// Names, claims and help of what `--gi` accepts beside auto and none.
+    /// Names, claims and help of what the setting `gi.technique` accepts beside auto and none.
     [[nodiscard]] std::span<const Technique> techniques() const;
 
     /// Keeps a pointer: `scene` must outlive the renderer or the next call. Changes are found by version numbers.

@@ -8,6 +8,7 @@
 #include "renderer/inspect_pass.h"
 #include "renderer/renderer.h"
 #include "renderer/surface_drawer.h"
+#include "renderer/technique_settings.h"
 
 namespace tyndall {
 
@@ -48,6 +49,7 @@ struct Renderer::Impl {
     PostSettings postSettings{};
     ConvergeSettings convergeSettings{};
     InspectSettings inspectSettings{};
+    TechniqueSettings techniqueSettings{};
     std::vector<Technique> techniques;
 
     const Scene* scene = nullptr;

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "core/check.h"
+#include "media/particle_grids.h"
 
 namespace tyndall {
 namespace {
@@ -110,6 +111,13 @@ void setCamera(Scene& scene, int camera, Camera value) {
 }
 void setMedium(Scene& scene, int medium, Medium value) {
     replace(scene.media, medium, std::move(value), "medium", scene.versions.media);
+}
+Result<std::vector<std::string>> setParticles(Scene& scene, int medium,
+                                              std::shared_ptr<const ParticleSet> particles) {
+    Medium changed = at(scene.media, medium, "medium");
+    Result<std::vector<std::string>> notes = setParticles(changed, std::move(particles));
+    if (notes) setMedium(scene, medium, std::move(changed));
+    return notes;
 }
 void setMesh(Scene& scene, int mesh, Mesh value) {
     replace(scene.meshes, mesh, std::move(value), "mesh", scene.versions.meshes);

@@ -2,9 +2,12 @@
 // Changes to a scene that keep its version numbers right: every function takes the next number for the thing that
 // changed and for its kind in SceneVersions. Whoever edits a scene by hand does the same.
 
+#include <memory>
 #include <string>
 #include <vector>
 
+#include "core/result.h"
+#include "media/particles.h"
 #include "scene/scene.h"
 
 namespace tyndall {
@@ -21,6 +24,10 @@ void setMaterial(Scene& scene, int material, Material value);
 void setLight(Scene& scene, int light, Light value);
 void setCamera(Scene& scene, int camera, Camera value);
 void setMedium(Scene& scene, int medium, Medium value);
+/// What the medium consists of: makes its grids anew, for particles that have moved. Returns notes, a sentence each. Errors as
+/// makeParticleGrids; the scene is then as it was.
+Result<std::vector<std::string>> setParticles(Scene& scene, int medium,
+                                              std::shared_ptr<const ParticleSet> particles);
 void setMesh(Scene& scene, int mesh, Mesh value);
 void setEnvironment(Scene& scene, Environment value);
 void setActiveCamera(Scene& scene, int node);

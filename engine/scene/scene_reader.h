@@ -60,7 +60,7 @@ private:
     std::filesystem::path file_;
     GltfMounts mounts_;
     std::map<std::string, int> textures_; // by file name as written
-    std::map<std::string, Medium> grids_; // by file and grid names
+    std::map<std::string, Medium> grids_; // by file and grid names, or rule of particles
     float fraction_ = 0;
 };
 

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "media/grid_import.h"
+#include "media/particle_grids.h"
 #include "scene/json_convert.h"
 #include "scene/scene_reader.h"
 
@@ -14,6 +15,11 @@ namespace {
 
 constexpr std::string_view kShapes[] = {"everywhere", "box", "sphere", "height"};
 constexpr std::string_view kPhases[] = {"henyey-greenstein", "rayleigh", "cornette-shanks"};
+constexpr std::string_view kTemperatureColumn = "temperature"; // of particles
+
+Result<ParticleSet> generated(const ParticleGenerator& rule) {
+    return generateParticles(rule.kind, rule.count, uint64_t(rule.seed), rule.radius);
+}
 
 } // namespace
 
@@ -47,9 +53,13 @@ Result<void> SceneReader::readMedium(const Json& json, const std::string& pointe
     const auto emission = json.find("emission");
     if (emission != json.end() && emission->is_array()) medium.emission = vec3(toVector(*emission));
     const std::string type = json.at("type").get<std::string>();
-    if (emission != json.end() && emission->is_object() && type != "grid")
-        return at(pointer + "/emission",
-                  "names a temperatureGrid, but only a medium of type grid has grids");
+    if (emission != json.end() && emission->is_object()) {
+        if (type == "homogeneous")
+            return at(pointer + "/emission",
+                      "names a temperatureGrid, but a homogeneous medium has no grids");
+        medium.temperatureGridName = emission->at("temperatureGrid").get<std::string>();
+        medium.temperatureScale = floatOr(*emission, "scale", 1.0f);
+    }
     Result<void> read;
     if (type == "grid")
         read = readGrid(json, pointer, node, medium);
@@ -94,11 +104,6 @@ Result<void> SceneReader::readGrid(const Json& json, const std::string& pointer,
                   "lacks the key 'file', which a medium of type grid needs: a .vdb or .nvdb file");
     medium.file = json.at("file").get<std::string>();
     medium.gridName = json.value("grid", std::string());
-    if (const auto emission = json.find("emission");
-        emission != json.end() && emission->is_object()) {
-        medium.temperatureGridName = emission->at("temperatureGrid").get<std::string>();
-        medium.temperatureScale = floatOr(*emission, "scale", 1.0f);
-    }
     std::string file = medium.file;
     if (isFramePattern(file) || json.contains("frames")) {
         const auto frames = json.find("frames");
@@ -141,7 +146,6 @@ Result<void> SceneReader::readGrid(const Json& json, const std::string& pointer,
 
 Result<void> SceneReader::readParticles(const Json& json, const std::string& pointer, Node& node,
                                         Medium& medium) {
-    medium.kind = MediumKind::Particles;
     if (auto keys = onlyKeys(json, pointer, "a medium of type particles",
                              {"type", "file", "generate", "scattering", "absorption", "anisotropy",
                               "phase", "emission"});
@@ -151,8 +155,7 @@ Result<void> SceneReader::readParticles(const Json& json, const std::string& poi
         return at(pointer,
                   "needs either a 'file' or a rule to 'generate' its particles, one of the two");
     medium.file = json.value("file", std::string());
-    if (!medium.file.empty() && !std::filesystem::is_regular_file(resolved(medium.file)))
-        return at(pointer + "/file", fmt::format("is '{}', which is not a file", medium.file));
+    std::string key = "particles\n" + medium.file;
     if (const auto generate = json.find("generate"); generate != json.end()) {
         ParticleGenerator rule;
         rule.kind = generate->at("kind").get<std::string>();
@@ -160,10 +163,35 @@ Result<void> SceneReader::readParticles(const Json& json, const std::string& poi
         rule.seed = generate->value("seed", rule.seed);
         rule.radius = generate->value("radius", rule.radius);
         node.particles = rule;
+        key += '\n' + generate->dump();
     }
-    loaded_.notes.push_back(
-        fmt::format("{}: {} describes particles, which are kept but not rendered",
-                    file_.filename().string(), pointer));
+    auto found = grids_.find(key);
+    if (found == grids_.end()) {
+        if (auto goOn = progress(fraction_, medium.file.empty() ? "particles" : medium.file); !goOn)
+            return goOn;
+        Result<ParticleSet> set = medium.file.empty()
+                                      ? generated(*node.particles)
+                                      : tyndall::readParticles(resolved(medium.file));
+        if (!set) return at(pointer + ":", set.message());
+        Medium shared;
+        const auto notes =
+            setParticles(shared, std::make_shared<const ParticleSet>(std::move(*set)));
+        if (!notes) return at(pointer + ":", notes.message());
+        for (const std::string& note : *notes)
+            loaded_.notes.push_back(at(pointer + ":", note).message);
+        found = grids_.emplace(key, std::move(shared)).first;
+    }
+    medium.kind = found->second.kind;
+    medium.density = found->second.density;
+    medium.temperature = found->second.temperature;
+    medium.particles = found->second.particles;
+    const std::string& wanted = medium.temperatureGridName;
+    if (!wanted.empty() && (wanted != kTemperatureColumn || !medium.temperature))
+        return at(pointer + "/emission/temperatureGrid",
+                  fmt::format("is '{}', but {}", wanted,
+                              medium.temperature
+                                  ? "the temperature of particles is their column 'temperature'"
+                                  : "its particles have no column 'temperature'"));
     return {};
 }
 

@@ -250,10 +250,10 @@ private:
 
     [[nodiscard]] Json medium(const Medium& medium, const Node& node) const {
         Json json;
-        if (medium.kind == MediumKind::Grid)
-            gridSource(json, medium, node);
-        else if (medium.kind == MediumKind::Particles)
+        if (medium.particles)
             particleSource(json, medium, node);
+        else if (medium.kind == MediumKind::Grid)
+            gridSource(json, medium, node);
         else {
             json["type"] = "homogeneous";
             json["shape"] = std::string(kShapes[size_t(medium.kind)]);

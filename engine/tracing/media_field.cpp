@@ -27,7 +27,6 @@ bool usable(const Medium& medium, const dmat4& rayFromNode) {
     if (medium.extinction() == vec3(0) && medium.emission == vec3(0) &&
         !(medium.temperatureScale > 0))
         return false;
-    if (medium.kind == MediumKind::Particles) return false;
     if (medium.kind == MediumKind::Grid && (!medium.density || medium.density->bricks.empty()))
         return false;
     return medium.kind == MediumKind::Everywhere || glm::determinant(dmat3(rayFromNode)) != 0;
@@ -85,7 +84,7 @@ void MediumSource::makeBrickBounds() {
 
 Bounds MediumSource::bounds() const {
     Bounds local;
-    if (endless() || kind_ == MediumKind::Particles) return local;
+    if (endless()) return local;
     if (isGrid()) {
         local.minimum = dvec3(grid_->origin);
         local.maximum = local.minimum + double(kBrickCells) * dvec3(grid_->brickCount);
@@ -106,7 +105,6 @@ Interval MediumSource::clip(const Ray& ray, double length) const {
         if (slope < 0) return {std::max(0.0, room / slope), length};
         return {0, room > 0 ? length : 0};
     }
-    case MediumKind::Particles: return {};
     default: break;
     }
     const dvec3 o = localPoint(ray.origin), d = dmat3(localFromRay_) * ray.direction;
@@ -175,7 +173,6 @@ double MediumSource::density(const dvec3& position) const {
     case MediumKind::Height:
         return std::exp(-std::max(0.0, glm::dot(up_, position) - ground_) / scaleHeight_);
     case MediumKind::Grid: return gridDensity(localPoint(position));
-    case MediumKind::Particles: break;
     }
     return 0;
 }
@@ -215,7 +212,6 @@ double MediumSource::densityIntegral(const Ray& ray, Interval interval) const {
     switch (kind_) {
     case MediumKind::Everywhere: return interval.end - interval.begin;
     case MediumKind::Height: return heightIntegral(ray, interval);
-    case MediumKind::Particles: return 0;
     default: break;
     }
     const Interval inside = clip(ray, interval.end);
@@ -316,9 +312,6 @@ MediaField::MediaField(const Scene& scene, const dvec3& origin, const Change& ch
         const Medium& medium = scene.media[size_t(index)];
         dmat4 rayFromNode = world[i];
         rayFromNode[3] -= dvec4(origin, 0);
-        if (medium.kind == MediumKind::Particles)
-            notes_.push_back("medium '" + medium.name +
-                             "' of particles is left out: the reference has none yet");
         if (!usable(medium, rayFromNode)) continue;
         const MediumSource& source = [&]() -> const MediumSource& {
             if (!change) return media_.emplace_back(medium, rayFromNode);

@@ -132,11 +132,9 @@ public:
     [[nodiscard]] bool grey() const { return grey_; }
     [[nodiscard]] bool scatters() const { return scatters_; }
     [[nodiscard]] bool emits() const { return emits_; }
-    [[nodiscard]] const std::vector<std::string>& notes() const { return notes_; }
 
 private:
     std::vector<MediumSource> media_;
-    std::vector<std::string> notes_;
     bool grey_ = true, scatters_ = false, emits_ = false;
 };
 

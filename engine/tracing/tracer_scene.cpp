@@ -12,10 +12,6 @@ Result<TracerScene> TracerScene::build(const Scene& scene, const dvec3& origin, 
     return result;
 }
 
-std::vector<std::string> TracerScene::notes() const {
-    std::vector<std::string> result = surfaces->notes();
-    result.insert(result.end(), media->notes().begin(), media->notes().end());
-    return result;
-}
+std::vector<std::string> TracerScene::notes() const { return surfaces->notes(); }
 
 } // namespace tyndall::tracing

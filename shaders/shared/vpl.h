@@ -81,6 +81,8 @@ struct VplParams {
     uint nearLight;           // 1: what the bound takes away and no step makes up for is in `VplNear`
     // Which lights count on surfaces and in media, a bit for each of kVplOfSurfaces and so on: each is the light of one term there.
     uint surfaceTerms, mediaTerms;
+    uint upToFreePath; // 1: in a medium 1/b reaches no farther than the free path there
+    uint padding0, padding1, padding2;
 };
 
 // By the last scattering of a light's power, and by whether that was its first.

@@ -9,15 +9,6 @@ using ::testing::HasSubstr;
 
 class ExecutorErrorTest : public ExecutorTest {
 protected:
-    /// The message of the check that fails in execute().
-    std::string failure() {
-        try {
-            (void)executor().execute();
-        } catch (const CheckFailure& caught) {
-            return caught.what();
-        }
-        return "nothing failed";
-    }
     /// One pass that creates `out`, may read `in`, and is needed.
     template <typename Execute> void pass(const char* name, Execute execute) {
         graph().addPass<Data>(

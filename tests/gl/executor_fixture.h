@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cstring>
 #include <optional>
 
 #include "framegraph/gl/executor.h"
@@ -27,7 +28,7 @@ protected:
     void SetUp() override {
         GlTest::SetUp();
         if (IsSkipped()) return;
-        library_.emplace();
+        library_.emplace(libraryOptions());
         // out = value
         library_->addSource(
             "test/fill.comp",
@@ -56,6 +57,7 @@ protected:
         GlTest::TearDown();
     }
 
+    virtual gl::ShaderLibraryOptions libraryOptions() { return {}; }
     Executor& executor() { return *executor_; }
     gl::ShaderLibrary& library() { return *library_; }
     FrameGraph& begin() { return *(graph_ = &executor_->beginFrame()); }
@@ -117,6 +119,22 @@ protected:
                 if (image.at(x, y)[0] != image.at(0, 0)[0])
                     return std::numeric_limits<float>::quiet_NaN();
         return image.at(0, 0)[0];
+    }
+    /// What a buffer holds.
+    template <typename T> std::vector<T> valuesOf(BufferHandle handle) {
+        const std::vector<std::byte> bytes = executor_->readBuffer(handle);
+        std::vector<T> values(bytes.size() / sizeof(T));
+        if (!bytes.empty()) std::memcpy(values.data(), bytes.data(), values.size() * sizeof(T));
+        return values;
+    }
+    /// The message of the check that fails in execute().
+    std::string failure() {
+        try {
+            (void)executor_->execute();
+        } catch (const CheckFailure& caught) {
+            return caught.what();
+        }
+        return "nothing failed";
     }
     const PassReport& reportOf(std::string_view name) {
         for (const PassReport& pass : executor_->report().passes)

@@ -149,6 +149,17 @@ TEST_P(ObjectTest, AFramebufferIsMadeOncePerSetOfAttachments) {
     EXPECT_EQ(moved.size(), 1u);
 }
 
+TEST_P(ObjectTest, WithoutAttachmentsAFramebufferIsCompleteNevertheless) {
+    FramebufferCache cache;
+    const GLuint none = cache.get({});
+    EXPECT_EQ(cache.get({}), none);
+    EXPECT_EQ(glCheckNamedFramebufferStatus(none, GL_DRAW_FRAMEBUFFER),
+              GLenum(GL_FRAMEBUFFER_COMPLETE));
+    const Texture color("color", {.internalFormat = GL_RGBA8});
+    cache.forget(color);
+    EXPECT_EQ(cache.size(), 1u) << "it has no texture to lose";
+}
+
 TEST_P(ObjectTest, ClearingAFramebufferReachesTheAttachedMipAndLayerAlone) {
     Texture array("array", {.target = GL_TEXTURE_2D_ARRAY,
                             .internalFormat = GL_R32F,

@@ -206,6 +206,63 @@ TEST_P(ProgramTest, ARasterProgramDraws) {
         }
 }
 
+constexpr const char* kPlainVertex = "void main() { gl_Position = vec4(0); }\n";
+constexpr const char* kLevels = "layout(vertices = 3) out;\nuniform float level;\nvoid main() {\n"
+                                "  for (int i = 0; i < 3; ++i) gl_TessLevelOuter[i] = level;\n"
+                                "  gl_TessLevelInner[0] = level; }\n";
+
+TEST_P(ProgramTest, TessellationIsReflectedWithWhatItMakesAndCaptures) {
+    ShaderLibrary library = libraryOf({
+        {"t.vert", kPlainVertex},
+        {"t.tesc", kLevels},
+        {"points.tese",
+         "layout(triangles, equal_spacing, point_mode) in;\n"
+         "layout(std430) readonly buffer Scale { float scale; };\n"
+         "layout(xfb_offset = 0) out Point { vec4 position; vec2 size; };\n"
+         "void main() { position = vec4(scale); size = gl_TessCoord.xy; gl_Position = vec4(0); }\n"},
+        {"lines.tese", "layout(isolines) in;\nvoid main() { gl_Position = vec4(0); }\n"},
+        {"quads.tese", "layout(quads) in;\nvoid main() { gl_Position = vec4(0); }\n"},
+        {"t.frag", "out vec4 color;\nvoid main() { color = vec4(1); }\n"},
+    });
+    const Program& points = *library.program({{"t.vert", "t.tesc", "points.tese"}, {}}).value();
+    EXPECT_EQ(points.tessellatesTo(), GLenum(GL_POINTS));
+    EXPECT_EQ(points.captureStride(), 24);
+    EXPECT_FALSE(points.hasFragments());
+    ASSERT_NE(points.find("level"), nullptr) << "a uniform of the control stage";
+    ASSERT_NE(points.find("Scale"), nullptr) << "a block of the evaluation stage";
+    EXPECT_TRUE(points.mentions("gl_TessCoord"));
+    const Program& lines =
+        *library.program({{"t.vert", "t.tesc", "lines.tese", "t.frag"}, {}}).value();
+    EXPECT_EQ(lines.tessellatesTo(), GLenum(GL_LINES));
+    EXPECT_EQ(lines.captureStride(), 0);
+    EXPECT_TRUE(lines.hasFragments());
+    const Program& quads =
+        *library.program({{"t.vert", "t.tesc", "quads.tese", "t.frag"}, {}}).value();
+    EXPECT_EQ(quads.tessellatesTo(), GLenum(GL_TRIANGLES));
+    EXPECT_FALSE(library.raster("t.vert", "t.frag").value()->tessellatesTo());
+    EXPECT_GE(context().capabilities().limits.patchVertices, 32) << "OpenGL 4.5, table 23.55";
+}
+
+TEST_P(ProgramTest, AMistakeInAStageOfTessellationIsReportedWithItsLine) {
+    ShaderLibrary library =
+        libraryOf({{"t.vert", kPlainVertex},
+                   {"t.tesc", kLevels},
+                   {"t.tese", "layout(triangles) in;\nvoid main() { gl_Position = nonsense; }\n"}});
+    const Result<const Program*> program = library.program({{"t.vert", "t.tesc", "t.tese"}, {}});
+    ASSERT_FALSE(program.ok());
+    EXPECT_THAT(program.message(), HasSubstr("t.tese:2"));
+}
+
+TEST_P(ProgramTest, CapturesIntoSeveralBuffersAreRefused) {
+    ShaderLibrary library =
+        libraryOf({{"t.vert", "layout(xfb_buffer = 0, xfb_offset = 0) out vec4 a;\n"
+                              "layout(xfb_buffer = 1, xfb_offset = 0) out vec4 b;\n"
+                              "void main() { a = b = vec4(1); gl_Position = vec4(0); }\n"}});
+    const Result<const Program*> program = library.program({{"t.vert"}, {}});
+    ASSERT_FALSE(program.ok());
+    EXPECT_THAT(program.message(), HasSubstr("shader 't.vert' captures into several buffers"));
+}
+
 TEST_P(ProgramTest, AMistakeInAnIncludeIsReportedWithItsFileAndLine) {
     ShaderLibrary library = libraryOf({
         {"t.comp",

@@ -139,7 +139,7 @@ TEST(ShaderSource, MessagesOfEveryDriverGetFileAndLine) {
 
 TEST(Variants, EveryCombinationOfEveryLineIsVisitedOnce) {
     const Result<VariantList> list = VariantList::parse(
-        "# all\nmedia/march.comp EXACT=0,1 OCTAVES=0,2,4  # six\n\ng.vert g.frag\n",
+        "# all\nmedia/march.comp EXACT=0,1 OCTAVES=0,2,4  # six\n\ng.vert g.frag\ns.vert s.tesc s.tese MASK=0,1\n",
         "variants.txt");
     ASSERT_TRUE(list.ok()) << list.message();
     std::vector<std::string> seen;
@@ -150,7 +150,7 @@ TEST(Variants, EveryCombinationOfEveryLineIsVisitedOnce) {
                     "media/march.comp EXACT=0 OCTAVES=0", "media/march.comp EXACT=0 OCTAVES=2",
                     "media/march.comp EXACT=0 OCTAVES=4", "media/march.comp EXACT=1 OCTAVES=0",
                     "media/march.comp EXACT=1 OCTAVES=2", "media/march.comp EXACT=1 OCTAVES=4",
-                    "g.vert g.frag"));
+                    "g.vert g.frag", "s.vert s.tesc s.tese MASK=0", "s.vert s.tesc s.tese MASK=1"));
 }
 
 TEST(Variants, ARequestMustNameEveryDefineOfItsLineWithAListedValue) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
+#include <iomanip>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -10,6 +11,7 @@
 
 #include "core/image.h"
 #include "core/image_metrics.h"
+#include "media/particles.h"
 #include "programs/process.h"
 #include "programs/scenes.h"
 #include "support/content.h"
@@ -281,6 +283,40 @@ TEST_F(CaptureTest, ABareModelGetsACameraAndALightAndSaysSo) {
     double sum = 0;
     for (float value : exr("a.exr").layers[0].image.pixels) sum += double(value);
     EXPECT_GT(sum, 0) << "something can be seen";
+}
+
+TEST_F(CaptureTest, ParticlesOfAFileAreThoseOfTheRuleThatMadeThem) {
+    const ParticleSet cloud = generateParticles("cloud", 50, 3, 1).value();
+    std::ofstream csv(options.folder / "cloud.csv");
+    csv << "x,y,z,radius,density\n" << std::setprecision(9); // digits that give each float back
+    for (const Particle& p : cloud.particles)
+        csv << p.position.x << ',' << p.position.y << ',' << p.position.z << ',' << p.radius << ','
+            << p.density << '\n';
+    csv.close();
+    const auto picture = [&](const std::string& source) {
+        json scene = json::parse(content(clear));
+        scene["nodes"].push_back(
+            {{"name", "cloud"},
+             {"translation", {0, 1, 1}},
+             {"medium",
+              json::parse(R"({"type": "particles", "scattering": [4, 4, 4], )" + source + "}")}});
+        std::ofstream(options.folder / "p.scene.json") << scene.dump();
+        const ProcessResult result = capture(
+            {"p.scene.json", "-o", "p.exr", "--size", "64x48", "--aov", "terms", "--quiet"});
+        EXPECT_EQ(result.status, 0) << result.err;
+        EXPECT_EQ(result.err, "");
+        return exr("p.exr");
+    };
+    const ExrFile made = picture(R"("generate": {"kind": "cloud", "count": 50, "seed": 3})"),
+                  read = picture(R"("file": "cloud.csv")");
+    ASSERT_EQ(made.layers.size(), read.layers.size());
+    bool scattered = false;
+    for (size_t i = 0; i < made.layers.size(); ++i) {
+        EXPECT_EQ(made.layers[i].image.pixels, read.layers[i].image.pixels) << made.layers[i].name;
+        for (const float value : made.layers[i].image.pixels)
+            scattered = scattered || (made.layers[i].name == "LVE" && value > 0);
+    }
+    EXPECT_TRUE(scattered);
 }
 
 TEST_F(CaptureTest, ASharedEffectGivesTheSamePictureAsTheBuiltInOne) {

@@ -37,8 +37,8 @@ TEST(CommandLine, HelpHasExamplesAndListsOnlyWhatThereIs) {
 TEST(CommandLine, ReferenceHelpHasEveryOptionOfTheInterface) {
     const std::string help = tyndall({"reference", "--help"}).out;
     for (const char* option :
-         {"SCENE", "-o,", "--size", "--spp", "--time ", "--target-error", "--terms", "--max-depth",
-          "--seed", "--threads", "--resume", "--camera", "--quiet"})
+         {"SCENE", "-o,", "--size", "--spp", "--seconds", "--time ", "--target-error", "--terms",
+          "--max-depth", "--seed", "--threads", "--resume", "--camera", "--quiet"})
         EXPECT_THAT(help, HasSubstr(option));
 }
 
@@ -51,6 +51,36 @@ TEST(CommandLine, CaptureHelpHasEveryOptionOfTheInterface) {
           "--aov",   "--report",   "--trace",  "--max-ms",  "--fail-on-nonfinite",
           "--quiet"})
         EXPECT_THAT(help, HasSubstr(option));
+}
+
+/// What the help says of an option, line breaks and columns aside.
+std::string helpOf(const std::string& help, const std::string& option) {
+    const size_t at = help.find("\n  " + option + " ");
+    if (at == std::string::npos) return "";
+    std::istringstream words(help.substr(at, help.find("\n  -", at + 3) - at));
+    std::string text, word;
+    while (words >> word) text += word + " ";
+    return text;
+}
+
+TEST(CommandLine, SharedOptionsReadTheSameInEveryProgram) {
+    const std::string capture = tyndall({"capture", "--help"}).out,
+                      graph = tyndall({"graph", "--help"}).out,
+                      reference = tyndall({"reference", "--help"}).out;
+    const fs::path editor = binDir() / "tyndall-editor";
+    const std::string window = fs::exists(editor) ? run({editor.string(), "--help"}).out : capture;
+    for (const char* option : {"--size", "--camera", "--time", "--terms", "--seed"}) {
+        EXPECT_NE(helpOf(capture, option), "") << option;
+        EXPECT_EQ(helpOf(capture, option), helpOf(graph, option));
+        EXPECT_EQ(helpOf(capture, option), helpOf(reference, option));
+    }
+    // All but --size, whose default is the viewport's.
+    for (const char* option : {"--camera", "--time", "--terms", "--seed", "--gi", "--quality",
+                               "--set", "--plugin", "--pose"}) {
+        EXPECT_NE(helpOf(capture, option), "") << option;
+        EXPECT_EQ(helpOf(capture, option), helpOf(graph, option));
+        EXPECT_EQ(helpOf(capture, option), helpOf(window, option));
+    }
 }
 
 TEST(CommandLine, CompareHelpHasEveryOption) {
@@ -118,6 +148,13 @@ const Refusal kRefusals[] = {
      {"reference", "SCENE", "-o", "a.exr", "--integrator", "ir", "--max-depth", "3"},
      "--max-depth does not go with --integrator ir"},
     {"an endless time", {"reference", "SCENE", "-o", "a.exr", "--time", "inf"}, "finite"},
+    {"an endless budget", {"reference", "SCENE", "-o", "a.exr", "--seconds", "inf"}, "finite"},
+    {"a time that was once a budget",
+     {"reference", "SCENE", "-o", "a.exr", "--time", "30"},
+     "--seconds"},
+    {"a technique set that is not there",
+     {"capture", "SCENE", "-o", "OUT", "--set", "gi.technique=octave"},
+     "did you mean 'octaves'?"},
     {"a camera that is not there",
      {"reference", "SCENE", "-o", "a.exr", "--camera", "ey"},
      "did you mean 'eye'?"},
@@ -206,7 +243,8 @@ TEST(Info, ListsSettingsThatCaptureTakesBack) {
     const ProcessResult result = tyndall({"info", "--settings"});
     ASSERT_EQ(result.status, 0) << result.err;
     EXPECT_THAT(result.out, AllOf(HasSubstr("; default "), HasSubstr("--quality low:"),
-                                  HasSubstr("--quality ultra:")));
+                                  HasSubstr("--quality ultra:"), HasSubstr("\ngi.technique\n"),
+                                  HasSubstr("text; default auto")));
     // A key stands alone on its line.
     std::istringstream lines(result.out);
     std::string line, key;
@@ -240,6 +278,28 @@ TEST(Info, SaysWhatIsInAVolume) {
     ASSERT_EQ(result.status, 0) << result.err;
     EXPECT_THAT(result.out, AllOf(HasSubstr("OpenVDB"), HasSubstr("grid 'density': float"),
                                   HasSubstr("active voxels"), HasSubstr("understood")));
+}
+
+TEST(Info, SaysWhatParticlesBecome) {
+    const fs::path folder = scratchDir("info-particles");
+    std::ofstream(folder / "two.csv") << "x,y,z,radius,density,temperature\n"
+                                         "0,0,0,1,2,900\n4,0,0,1,2,1500\n";
+    std::ofstream(folder / "s.scene.json")
+        << R"({"tyndall": 1, "nodes": [{"name": "two", "medium": {"type": "particles", "file": "two.csv"}}]})";
+    // The peak lies on a voxel: 105/16 times 2.
+    const std::string line =
+        "medium 'two': particles from 'two.csv'\n    2 particles in (-1, -1, -1) to (5, 1, 1) m; "
+        "voxels of 0.25 m in ";
+    for (const char* file : {"two.csv", "s.scene.json"}) {
+        const ProcessResult result = tyndall({"info", (folder / file).string()});
+        ASSERT_EQ(result.status, 0) << result.err;
+        EXPECT_THAT(result.out, HasSubstr(line)) << file;
+        EXPECT_THAT(result.out, HasSubstr("density 0 to 13.125, up to 1500 K")) << file;
+    }
+    std::ofstream(folder / "bad.csv") << "x,y,z,radius,density\n0,0,0,-1,2\n";
+    const ProcessResult bad = tyndall({"info", (folder / "bad.csv").string()});
+    EXPECT_EQ(bad.status, 2);
+    EXPECT_THAT(bad.err, HasSubstr("line 2: radius is -1; it must be greater than 0"));
 }
 
 TEST(Graph, ComesInThreeFormats) {

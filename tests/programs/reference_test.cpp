@@ -204,9 +204,13 @@ TEST_F(ReferenceTest, StopsAtWhicheverGoalComesFirst) {
     const ExrFile good = exr("e.exr");
     EXPECT_LE(std::stod(good.metadata.at("tyndall.estimatedRelmse")), 0.05);
     EXPECT_LT(std::stoi(good.metadata.at("tyndall.samples")), 100000);
-    const ProcessResult timed = reference({"-o", "t.exr", "--time", "1", "--spp", "100000000"});
+    const ProcessResult timed = reference({"-o", "t.exr", "--seconds", "1", "--spp", "100000000"});
     ASSERT_EQ(timed.status, 0) << timed.err;
     EXPECT_LT(timed.seconds, 30);
+    // The scene's clock is no goal.
+    ASSERT_EQ(reference({"-o", "c.exr", "--time", "0.5", "--spp", "3"}).status, 0);
+    EXPECT_EQ(exr("c.exr").metadata.at("tyndall.samples"), "3");
+    EXPECT_EQ(exr("c.exr").metadata.at("tyndall.time"), "0.5");
 }
 
 TEST_F(ReferenceTest, TermsAndDepthLeaveOutTheRest) {

@@ -52,6 +52,8 @@ Rendered TestRenderer::render(const Scene& scene, const RenderOptions& options) 
     context_.makeCurrent();
     renderer_->settings().resetAll();
     if (options.quality) renderer_->settings().applyPreset(*options.quality);
+    if (Result<void> done = renderer_->settings().set("gi.technique", options.gi); !done)
+        throw std::runtime_error(done.message());
     for (const std::string& setting : options.settings)
         if (Result<void> done = renderer_->settings().assign(setting); !done)
             throw std::runtime_error(done.message());
@@ -63,7 +65,6 @@ Rendered TestRenderer::render(const Scene& scene, const RenderOptions& options) 
     request.width = options.width;
     request.height = options.height;
     request.terms = options.terms;
-    request.gi = options.gi;
     request.seed = options.seed;
     request.converge = options.converge || options.frames > 1;
     request.separateTerms = options.separateTerms;

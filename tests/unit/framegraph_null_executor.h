@@ -19,8 +19,12 @@ public:
     void beginCompute(const char* shader, const Define*, uint32_t) override {
         note(std::string("compute ") + shader);
     }
-    void beginRaster(const char* vertex, const char* fragment, const Define*, uint32_t) override {
-        note(std::string("raster ") + vertex + " " + fragment);
+    void beginRaster(const RasterShaders& shaders, const Define*, uint32_t) override {
+        std::string call = "raster";
+        for (const char* file :
+             {shaders.vertex, shaders.tessControl, shaders.tessEvaluation, shaders.fragment})
+            if (file) call += std::string(" ") + file;
+        note(call);
     }
     void bindTexture(const char* name, TextureHandle, int32_t, int32_t) override {
         note(std::string("bind ") + name);
@@ -47,7 +51,13 @@ public:
     void targets(const Target*, uint32_t, const Target*) override { note("targets"); }
     void viewport(int32_t, int32_t, int32_t, int32_t) override { note("viewport"); }
     void rasterState(const RasterState&) override { note("state"); }
+    void capture(BufferHandle, BufferHandle count, uint64_t countOffset) override {
+        note(count ? "capture, count at " + std::to_string(countOffset) : "capture");
+    }
     void draw(uint32_t, uint32_t, uint32_t) override { note("draw"); }
+    void drawIndirect(BufferHandle, uint64_t byteOffset) override {
+        note("draw indirect at " + std::to_string(byteOffset));
+    }
     void drawGeometry(StaticGeometry, uint32_t, uint32_t, uint32_t, uint32_t) override {
         note("geometry");
     }

@@ -17,7 +17,8 @@ const TextureDesc kColor = texture2D(Format::RGBA32F, 8, 4); // 512 bytes
 // Values of the OpenGL 4.5 registry.
 constexpr uint32_t GL_TEXTURE_FETCH = 0x8, GL_SHADER_IMAGE = 0x20, GL_COMMAND = 0x40,
                    GL_UNIFORM = 0x4, GL_VERTEX = 0x1, GL_ELEMENT = 0x2, GL_TEXTURE_UPDATE = 0x100,
-                   GL_BUFFER_UPDATE = 0x200, GL_FRAMEBUFFER = 0x400, GL_SHADER_STORAGE = 0x2000;
+                   GL_BUFFER_UPDATE = 0x200, GL_FRAMEBUFFER = 0x400, GL_TRANSFORM_FEEDBACK = 0x800,
+                   GL_SHADER_STORAGE = 0x2000, GL_QUERY_BUFFER = 0x8000;
 
 struct FrameGraphStorage : ::testing::Test {
     NullExecutor executor;
@@ -165,13 +166,14 @@ TEST(BarrierTable, ShaderWritesNeedTheBitOfTheNextAccess) {
     EXPECT_EQ(bits(Access::Vertex, true), GL_VERTEX | GL_ELEMENT);
     EXPECT_EQ(bits(Access::TransferRead, false), GL_TEXTURE_UPDATE);
     EXPECT_EQ(bits(Access::TransferWrite, true), GL_BUFFER_UPDATE);
+    EXPECT_EQ(bits(Access::Capture, true), GL_TRANSFORM_FEEDBACK | GL_QUERY_BUFFER);
     for (const Access target : {Access::ColorTarget, Access::DepthTarget, Access::DepthRead})
         EXPECT_EQ(bits(target, false), GL_FRAMEBUFFER);
 }
 
 TEST(BarrierTable, CoherentAccessesNeedNoneAmongThemselves) {
-    for (uint32_t previous = 0; previous <= uint32_t(Access::TransferWrite); ++previous)
-        for (uint32_t next = 0; next <= uint32_t(Access::TransferWrite); ++next)
+    for (uint32_t previous = 0; previous <= uint32_t(Access::Capture); ++previous)
+        for (uint32_t next = 0; next <= uint32_t(Access::Capture); ++next)
             for (const bool buffer : {false, true}) {
                 const bool incoherent = Access(previous) == Access::StorageWrite ||
                                         Access(next) == Access::StorageWrite;

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "core/image.h"
+#include "scene/scene_edit.h"
 #include "scene/scene_writer.h"
 #include "support/content.h"
 
@@ -220,7 +221,7 @@ TEST(SceneFile, RefusalsNameThePlaceAndTheRemedy) {
         {R"({"medium": {"type": "homogeneous", "shape": "box", "emission": 1}})",
          "/nodes/0/medium/emission is 1 but must be of type array or object"},
         {R"({"medium": {"type": "homogeneous", "shape": "box", "emission": {"temperatureGrid": "t"}}})",
-         "/nodes/0/medium/emission names a temperatureGrid, but only a medium of type grid has grids"},
+         "/nodes/0/medium/emission names a temperatureGrid, but a homogeneous medium has no grids"},
         {R"({"camera": {"type": "perspective", "ymag": 1}})",
          "/nodes/0/camera has the key 'ymag', which does not apply to a perspective camera; it takes type, yfov, znear"},
         {R"({"animate": {"property": "translation", "times": [0, 1], "values": [[0,0,0]]}})",
@@ -301,13 +302,78 @@ TEST(SceneFile, EndlessMediumUnderTheSkyIsNoted) {
     EXPECT_NE(sunny->notes[0].find("'height' or 'box'"), std::string::npos);
 }
 
-TEST(SceneFile, ParticlesAreKeptAndNoted) {
+TEST(SceneFile, ParticlesBecomeBricks) {
     const auto loaded = loadNode(
-        R"({"medium": {"type": "particles", "generate": {"kind": "cloud", "count": 10, "seed": 3, "radius": 2}, "scattering": [9,9,9]}})");
+        R"({"medium": {"type": "particles", "generate": {"kind": "cloud", "count": 10, "seed": 3, "radius": 2}, "scattering": [9,9,9]}},
+           {"medium": {"type": "particles", "generate": {"kind": "cloud", "count": 10, "seed": 3, "radius": 2}}})");
     ASSERT_TRUE(loaded.ok()) << loaded.message();
-    EXPECT_EQ(loaded->scene.media.at(0).kind, MediumKind::Particles);
-    EXPECT_EQ(loaded->scene.nodes.at(0).particles, (ParticleGenerator{"cloud", 10, 3, 2}));
-    EXPECT_EQ(loaded->notes.size(), 1u);
+    const Scene& scene = loaded->scene;
+    const Medium& medium = scene.media.at(0);
+    EXPECT_EQ(medium.kind, MediumKind::Grid);
+    ASSERT_TRUE(medium.particles && medium.density);
+    EXPECT_EQ(medium.particles->particles.size(), 10u);
+    EXPECT_GT(medium.density->maximum, 0);
+    EXPECT_EQ(medium.temperature, nullptr);
+    EXPECT_EQ(scene.nodes.at(0).particles, (ParticleGenerator{"cloud", 10, 3, 2}));
+    EXPECT_TRUE(loaded->notes.empty());
+    EXPECT_EQ(scene.media.at(1).density, medium.density) << "the same particles are made once";
+    EXPECT_FALSE(scene.worldBounds().empty());
+}
+
+TEST(SceneFile, ParticlesOfAFileMayGlowAndMove) {
+    const fs::path folder = test::scratchDir("scene-particles");
+    ASSERT_TRUE(writeFileAtomically(folder / "hot.csv", "x,y,z,radius,density,temperature\n"
+                                                        "0,0,0,0.5,2,1500\n1,0,0,0.5,1,900\n")
+                    .ok());
+    ASSERT_TRUE(
+        writeFileAtomically(folder / "cold.csv", "x,y,z,radius,density\n0,0,0,0.5,2\n").ok());
+    ASSERT_TRUE(
+        writeFileAtomically(folder / "bad.csv", "x,y,z,radius,density\n0,0,nan,0.5,2\n").ok());
+    const auto load = [&](const std::string& file, const std::string& emission) {
+        const fs::path scene = folder / "s.scene.json";
+        EXPECT_TRUE(
+            writeFileAtomically(
+                scene, R"({"tyndall": 1, "nodes": [{"medium": {"type": "particles", "file": ")" +
+                           file + R"(", "emission": )" + emission + "}}]}")
+                .ok());
+        return loadScene(scene);
+    };
+    const std::string glow = R"({"temperatureGrid": "temperature", "scale": 0.5})";
+    auto loaded = load("hot.csv", glow);
+    ASSERT_TRUE(loaded.ok()) << loaded.message();
+    Scene& scene = loaded->scene;
+    EXPECT_EQ(scene.media[0].temperatureScale, 0.5f);
+    ASSERT_TRUE(scene.media[0].temperature);
+    EXPECT_NEAR(scene.media[0].temperature->maximum, 1500, 1e-3);
+    const auto saved = sceneFileText(scene, folder);
+    ASSERT_TRUE(saved.ok());
+    EXPECT_NE(saved->find(R"("file": "hot.csv")"), std::string::npos);
+    EXPECT_NE(saved->find(glow), std::string::npos) << *saved;
+
+    const auto before = scene.media[0].density;
+    const Version version = scene.versions.media;
+    ParticleSet moved = *scene.media[0].particles;
+    for (Particle& p : moved.particles) p.position.y += 3;
+    ASSERT_TRUE(setParticles(scene, 0, std::make_shared<const ParticleSet>(moved)).ok());
+    EXPECT_GT(scene.versions.media, version);
+    EXPECT_NE(scene.media[0].density, before);
+    EXPECT_NEAR(scene.worldBounds().centre().y, 3, 0.5) << "half a metre of voxels around them";
+
+    EXPECT_TRUE(load("cold.csv", "[1, 0, 0]").ok());
+    EXPECT_NE(
+        load("cold.csv", glow)
+            .message()
+            .find(
+                "/emission/temperatureGrid is 'temperature', but its particles have no column 'temperature'"),
+        std::string::npos);
+    EXPECT_NE(
+        load("hot.csv", R"({"temperatureGrid": "heat"})")
+            .message()
+            .find("is 'heat', but the temperature of particles is their column 'temperature'"),
+        std::string::npos);
+    EXPECT_NE(load("bad.csv", "[1, 0, 0]").message().find("bad.csv', line 2: z is 'nan'"),
+              std::string::npos);
+    EXPECT_NE(load("none.csv", "[1, 0, 0]").message().find("/nodes/0/medium: "), std::string::npos);
 }
 
 TEST(SceneFile, SuppliedCameraSeesTheWholeScene) {

@@ -98,6 +98,7 @@ Result<void> Executor::Impl::execute() {
     try {
         done = runPasses();
     } catch (...) { // a failed check inside a pass: what it was to write is unknown
+        context_.endPass();
         timings_ = PassTimings(options_.timings);
         persistent_.forgetResults();
         persistent_.resetHistory();
@@ -150,6 +151,7 @@ void Executor::Impl::runPass(uint32_t index, uint64_t key) {
     context_.memoryBarrier(pass.barriers);
     context_.beginPass(index);
     pass.execute(pass.data, context_);
+    context_.endPass();
     timings_.end();
 }
 

@@ -40,6 +40,8 @@ void GlPassContext::beginFrame() {
     glClipControl(
         GL_LOWER_LEFT,
         GL_ZERO_TO_ONE); // reversed depth keeps its precision only without the remapping of −1..1
+    glDisable(GL_RASTERIZER_DISCARD);
+    discards_ = false;
     glDisable(GL_SCISSOR_TEST);
     glDisable(GL_STENCIL_TEST);
     glDisable(GL_MULTISAMPLE);
@@ -60,6 +62,11 @@ void GlPassContext::beginPass(uint32_t pass) {
     state_ = {};
 }
 
+void GlPassContext::endPass() {
+    capture_.end();
+    setDiscard(false);
+}
+
 void GlPassContext::memoryBarrier(uint32_t bits) {
     if (bits == 0) return;
     glMemoryBarrier(bits);
@@ -67,6 +74,7 @@ void GlPassContext::memoryBarrier(uint32_t bits) {
 }
 
 void GlPassContext::barrier(Access next) {
+    capture_.end();
     memoryBarrier(barrierBits(Access::StorageWrite, next, false) |
                   barrierBits(Access::StorageWrite, next, true));
 }
@@ -79,15 +87,16 @@ void GlPassContext::check(uint32_t resource, uint32_t version, Touch touch,
 
 // --- programs ---
 
-void GlPassContext::begin(const char* first, const char* second, const Define* defines,
+void GlPassContext::begin(std::span<const char* const> files, const Define* defines,
                           uint32_t defineCount) {
+    capture_.end(); // GL changes no program meanwhile
     program_ = nullptr;
     bound_.fill(false);
     allBound_ = false;
     hasTargets_ = false;
     stateApplied_ = false;
     Result<const gl::Program*> found =
-        world_.programs.find(passName(), first, second, {defines, defineCount});
+        world_.programs.find(passName(), files, {defines, defineCount});
     if (!found.ok()) {
         if (!failure_) failure_ = found.error();
         return;
@@ -99,12 +108,23 @@ void GlPassContext::begin(const char* first, const char* second, const Define* d
 }
 
 void GlPassContext::beginCompute(const char* shader, const Define* defines, uint32_t defineCount) {
-    begin(shader, nullptr, defines, defineCount);
+    begin({&shader, 1}, defines, defineCount);
 }
 
-void GlPassContext::beginRaster(const char* vertexShader, const char* fragmentShader,
-                                const Define* defines, uint32_t defineCount) {
-    begin(vertexShader, fragmentShader, defines, defineCount);
+void GlPassContext::beginRaster(const RasterShaders& shaders, const Define* defines,
+                                uint32_t defineCount) {
+    CHECK(shaders.vertex != nullptr,
+          fmt::format("pass '{}' draws without a vertex shader", passName()));
+    CHECK(
+        (shaders.tessControl != nullptr) == (shaders.tessEvaluation != nullptr),
+        fmt::format("pass '{}' draws '{}' with one stage of tessellation: it needs both or neither",
+                    passName(), shaders.vertex));
+    std::array<const char*, 4> files{};
+    size_t count = 0;
+    for (const char* file :
+         {shaders.vertex, shaders.tessControl, shaders.tessEvaluation, shaders.fragment})
+        if (file != nullptr) files[count++] = file;
+    begin({files.data(), count}, defines, defineCount);
     state_ = {};
 }
 
@@ -295,15 +315,22 @@ void GlPassContext::dispatchThreads(uint32_t x, uint32_t y, uint32_t z) {
     dispatch((x + size.x - 1) / size.x, (y + size.y - 1) / size.y, (z + size.z - 1) / size.z);
 }
 
-void GlPassContext::dispatchIndirect(BufferHandle arguments, uint64_t byteOffset) {
-    check(arguments.resource, arguments.version, Touch::Indirect, "dispatch arguments");
-    if (!program_ || isAbsent(arguments)) return; // a stand-in's zeros would dispatch nothing
-    checkAllBound();
-    CHECK(byteOffset % 4 == 0 && byteOffset + 12 <= desc(arguments).bytes,
-          fmt::format("pass '{}' reads dispatch arguments at byte {} of a buffer of {}", passName(),
+const gl::Buffer* GlPassContext::argumentsAt(BufferHandle arguments, uint64_t byteOffset,
+                                             size_t bytes, const char* place) const {
+    check(arguments.resource, arguments.version, Touch::Indirect, place);
+    if (isAbsent(arguments)) return nullptr; // a stand-in's zeros would do nothing
+    CHECK(byteOffset % 4 == 0 && byteOffset + bytes <= desc(arguments).bytes,
+          fmt::format("pass '{}' reads {} at byte {} of a buffer of {}", passName(), place,
                       byteOffset, desc(arguments).bytes));
-    glBindBuffer(GL_DISPATCH_INDIRECT_BUFFER,
-                 world_.storageOf(arguments.resource, arguments.version).buffer.id());
+    return &world_.storageOf(arguments.resource, arguments.version).buffer;
+}
+
+void GlPassContext::dispatchIndirect(BufferHandle arguments, uint64_t byteOffset) {
+    const gl::Buffer* buffer =
+        argumentsAt(arguments, byteOffset, sizeof(DispatchArguments), "dispatch arguments");
+    if (!program_ || !buffer) return;
+    checkAllBound();
+    glBindBuffer(GL_DISPATCH_INDIRECT_BUFFER, buffer->id());
     glDispatchComputeIndirect(GLintptr(byteOffset));
 }
 

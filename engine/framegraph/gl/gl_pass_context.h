@@ -4,9 +4,11 @@
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 
 #include "framegraph/binding_check.h"
+#include "framegraph/gl/capture.h"
 #include "framegraph/gl/program_cache.h"
 #include "framegraph/gl/static_table.h"
 #include "framegraph/gl/storage.h"
@@ -47,13 +49,15 @@ public:
     /// Sets GL's state to what passes rely on; before the first pass of a frame.
     void beginFrame();
     void beginPass(uint32_t pass);
+    /// Finishes the last command; also after a pass that threw.
+    void endPass();
     /// The message of the first shader that failed in this frame; the rest of its pass did nothing.
     [[nodiscard]] const std::optional<Error>& failure() const { return failure_; }
     [[nodiscard]] uint32_t barrierCount() const { return barrierCount_; }
     void memoryBarrier(uint32_t bits);
 
     void beginCompute(const char* shader, const Define* defines, uint32_t defineCount) override;
-    void beginRaster(const char* vertexShader, const char* fragmentShader, const Define* defines,
+    void beginRaster(const RasterShaders& shaders, const Define* defines,
                      uint32_t defineCount) override;
     void bindTexture(const char* name, TextureHandle handle, int32_t mip, int32_t layer) override;
     void bindBuffer(const char* name, BufferHandle handle) override;
@@ -68,7 +72,9 @@ public:
     void targets(const Target* colors, uint32_t colorCount, const Target* depth) override;
     void viewport(int32_t x, int32_t y, int32_t width, int32_t height) override;
     void rasterState(const RasterState& state) override;
+    void capture(BufferHandle into, BufferHandle count, uint64_t countOffset) override;
     void draw(uint32_t vertexCount, uint32_t instanceCount, uint32_t firstVertex) override;
+    void drawIndirect(BufferHandle arguments, uint64_t byteOffset) override;
     void drawGeometry(StaticGeometry geometry, uint32_t firstIndex, uint32_t indexCount,
                       uint32_t instanceCount, uint32_t baseInstance) override;
     void clearTexture(TextureHandle handle, const float rgba[4]) override;
@@ -90,7 +96,7 @@ public:
     }
 
 private:
-    void begin(const char* first, const char* second, const Define* defines, uint32_t defineCount);
+    void begin(std::span<const char* const> files, const Define* defines, uint32_t defineCount);
     /// The program's resource of this name; null where the shader compiler has removed it. CHECKs that the source has the name.
     const gl::ProgramResource* resourceOf(const char* name);
     void markBound(const gl::ProgramResource& resource);
@@ -103,9 +109,14 @@ private:
                    int32_t mip, int32_t layer);
     void bindBlock(const gl::ProgramResource& block, const gl::Buffer& buffer, uint64_t bytes);
     void aroundClear(uint32_t resource, bool isBuffer, bool before);
+    /// Where the arguments of an indirect command are; null where the buffer is absent, and with it the command.
+    const gl::Buffer* argumentsAt(BufferHandle arguments, uint64_t byteOffset, size_t bytes,
+                                  const char* place) const;
     void prepareDraw(GLuint vertexArray);
+    void checkTopology() const;
+    void beginCapture();
+    void setDiscard(bool on);
     void applyState();
-    [[nodiscard]] GLenum topology() const;
     [[nodiscard]] std::string_view passName() const { return world_.graph.passes()[pass_].name; }
 
     const GlWorld& world_;
@@ -118,6 +129,8 @@ private:
     TextureHandle depthTarget_;
     RasterState state_;
     bool stateApplied_ = false;
+    bool discards_ = false; // nothing is rasterised
+    Capture capture_;
     std::optional<Error> failure_;
     uint32_t barrierCount_ = 0;
 };

@@ -7,11 +7,22 @@
 #include "core/check.h"
 #include "framegraph/gl/gl_format.h"
 #include "framegraph/gl/gl_pass_context.h"
+#include "gl/context.h"
 
 namespace tyndall::fg {
 namespace {
 
 void enable(GLenum capability, bool on) { on ? glEnable(capability) : glDisable(capability); }
+
+GLenum glTopology(Topology topology) {
+    switch (topology) {
+    case Topology::Triangles: return GL_TRIANGLES;
+    case Topology::Lines: return GL_LINES;
+    case Topology::Points: return GL_POINTS;
+    case Topology::Patches: return GL_PATCHES;
+    }
+    return GL_TRIANGLES;
+}
 
 } // namespace
 
@@ -57,6 +68,9 @@ void GlPassContext::rasterState(const RasterState& state) {
 void GlPassContext::applyState() {
     if (stateApplied_) return;
     stateApplied_ = true;
+    checkTopology();
+    if (state_.topology == Topology::Patches)
+        glPatchParameteri(GL_PATCH_VERTICES, GLint(state_.patchVertices));
     const bool depthWrites = state_.depth == DepthMode::TestAndWrite;
     if (depthWrites && depthTarget_)
         check(depthTarget_.resource, depthTarget_.version, Touch::DepthAttachment, "depth target");
@@ -79,32 +93,92 @@ void GlPassContext::applyState() {
     enable(GL_DEPTH_CLAMP, state_.depthClamp);
 }
 
+void GlPassContext::setDiscard(bool on) {
+    if (on != discards_) enable(GL_RASTERIZER_DISCARD, on);
+    discards_ = on;
+}
+
 // --- draws ---
 
-GLenum GlPassContext::topology() const {
-    switch (state_.topology) {
-    case Topology::Triangles: return GL_TRIANGLES;
-    case Topology::Lines: return GL_LINES;
-    case Topology::Points: return GL_POINTS;
+void GlPassContext::capture(BufferHandle into, BufferHandle count, uint64_t countOffset) {
+    if (!program_) return;
+    CHECK(
+        program_->captureStride() > 0,
+        fmt::format(
+            "pass '{}' captures from '{}', which has no output with xfb_offset in its last stage before "
+            "rasterisation",
+            passName(), program_->name()));
+    check(into.resource, into.version, Touch::Capture, "capture");
+    CHECK(!isAbsent(into), fmt::format("pass '{}' captures into something absent", passName()));
+    const gl::Buffer* counter = nullptr;
+    if (count) {
+        check(count.resource, count.version, Touch::Capture, "capture count");
+        CHECK(!isAbsent(count), fmt::format("pass '{}' counts in something absent", passName()));
+        CHECK(countOffset % 4 == 0 && countOffset + 4 <= desc(count).bytes,
+              fmt::format("pass '{}' writes the capture count at byte {} of a buffer of {}",
+                          passName(), countOffset, desc(count).bytes));
+        counter = &world_.storageOf(count.resource, count.version).buffer;
     }
-    return GL_TRIANGLES;
+    capture_.aim(world_.storageOf(into.resource, into.version).buffer, desc(into).bytes, counter,
+                 countOffset);
+}
+
+void GlPassContext::beginCapture() {
+    capture_.begin(program_->tessellatesTo().value_or(glTopology(state_.topology)));
+}
+
+void GlPassContext::checkTopology() const {
+    const bool patches = state_.topology == Topology::Patches;
+    const bool tessellates = program_->tessellatesTo().has_value();
+    CHECK(patches || !tessellates,
+          fmt::format(
+              "pass '{}' draws with '{}', which tessellates: RasterState::topology must be Patches",
+              passName(), program_->name()));
+    CHECK(
+        !patches || tessellates,
+        fmt::format(
+            "pass '{}' draws patches with '{}', which does not tessellate: it needs both stages of tessellation",
+            passName(), program_->name()));
+    if (!patches) return;
+    const auto most = uint32_t(gl::currentCapabilities().limits.patchVertices);
+    CHECK(state_.patchVertices >= 1 && state_.patchVertices <= most,
+          fmt::format("pass '{}' draws patches of {} vertices with '{}': a patch has 1 to {}",
+                      passName(), state_.patchVertices, program_->name(), most));
 }
 
 void GlPassContext::prepareDraw(GLuint vertexArray) {
     CHECK(!program_->isCompute(),
           fmt::format("pass '{}' draws with '{}', a compute shader", passName(), program_->name()));
-    CHECK(hasTargets_,
+    CHECK(hasTargets_ || !program_->hasFragments(),
           fmt::format("pass '{}' draws with '{}' without targets", passName(), program_->name()));
+    CHECK(capture_.isAimed() || program_->captureStride() == 0,
+          fmt::format(
+              "pass '{}' draws with '{}', which captures, without a buffer for it: call capture() "
+              "before, and again after a clear, copy, upload or barrier",
+              passName(), program_->name()));
     checkAllBound();
     applyState();
+    if (!hasTargets_) glBindFramebuffer(GL_FRAMEBUFFER, world_.framebuffers.get({}));
+    setDiscard(!hasTargets_);
+    if (capture_.isAimed()) beginCapture();
     glBindVertexArray(vertexArray);
 }
 
 void GlPassContext::draw(uint32_t vertexCount, uint32_t instanceCount, uint32_t firstVertex) {
     if (!program_ || vertexCount == 0 || instanceCount == 0) return;
     prepareDraw(emptyVertexArray_.id());
-    glDrawArraysInstanced(topology(), GLint(firstVertex), GLsizei(vertexCount),
+    glDrawArraysInstanced(glTopology(state_.topology), GLint(firstVertex), GLsizei(vertexCount),
                           GLsizei(instanceCount));
+}
+
+void GlPassContext::drawIndirect(BufferHandle arguments, uint64_t byteOffset) {
+    const gl::Buffer* buffer =
+        argumentsAt(arguments, byteOffset, sizeof(DrawArguments), "draw arguments");
+    if (!program_ || !buffer) return;
+    prepareDraw(emptyVertexArray_.id());
+    glBindBuffer(GL_DRAW_INDIRECT_BUFFER, buffer->id());
+    glDrawArraysIndirect(glTopology(state_.topology),
+                         reinterpret_cast<const void*>(uintptr_t(byteOffset)));
 }
 
 void GlPassContext::drawGeometry(StaticGeometry geometry, uint32_t firstIndex, uint32_t indexCount,
@@ -113,14 +187,15 @@ void GlPassContext::drawGeometry(StaticGeometry geometry, uint32_t firstIndex, u
     const StaticGeometryEntry& entry = world_.statics.geometry(geometry.id);
     prepareDraw(entry.vertexArray.id());
     if (!entry.indexed) {
-        glDrawArraysInstancedBaseInstance(topology(), GLint(firstIndex), GLsizei(indexCount),
-                                          GLsizei(instanceCount), baseInstance);
+        glDrawArraysInstancedBaseInstance(glTopology(state_.topology), GLint(firstIndex),
+                                          GLsizei(indexCount), GLsizei(instanceCount),
+                                          baseInstance);
         return;
     }
     const uintptr_t offset =
         uintptr_t(entry.indexOffsetBytes) + uintptr_t(firstIndex) * sizeof(uint32_t);
-    glDrawElementsInstancedBaseInstance(topology(), GLsizei(indexCount), GL_UNSIGNED_INT,
-                                        reinterpret_cast<const void*>(offset),
+    glDrawElementsInstancedBaseInstance(glTopology(state_.topology), GLsizei(indexCount),
+                                        GL_UNSIGNED_INT, reinterpret_cast<const void*>(offset),
                                         GLsizei(instanceCount), baseInstance);
 }
 
@@ -136,6 +211,7 @@ void GlPassContext::aroundClear(uint32_t resource, bool isBuffer, bool before) {
 }
 
 void GlPassContext::clearTexture(TextureHandle handle, const float rgba[4]) {
+    capture_.end();
     check(handle.resource, handle.version, Touch::TransferWrite, "clear");
     gl::Texture& texture = world_.storageOf(handle.resource, handle.version).texture;
     aroundClear(handle.resource, false, true);
@@ -152,6 +228,7 @@ void GlPassContext::clearTexture(TextureHandle handle, const float rgba[4]) {
 }
 
 void GlPassContext::clearBuffer(BufferHandle handle, uint32_t value) {
+    capture_.end();
     check(handle.resource, handle.version, Touch::TransferWrite, "clear");
     aroundClear(handle.resource, true, true);
     world_.storageOf(handle.resource, handle.version).buffer.clear(value);
@@ -159,6 +236,7 @@ void GlPassContext::clearBuffer(BufferHandle handle, uint32_t value) {
 }
 
 void GlPassContext::copyTexture(TextureHandle from, TextureHandle to) {
+    capture_.end();
     check(from.resource, from.version, Touch::TransferRead, "copy source");
     check(to.resource, to.version, Touch::TransferWrite, "copy destination");
     const TextureDesc source = desc(from), destination = desc(to);
@@ -182,6 +260,7 @@ void GlPassContext::copyTexture(TextureHandle from, TextureHandle to) {
 
 void GlPassContext::upload(BufferHandle handle, uint64_t byteOffset, const void* data,
                            size_t bytes) {
+    capture_.end();
     check(handle.resource, handle.version, Touch::TransferWrite, "upload");
     if (bytes == 0) return;
     CHECK(byteOffset + bytes <= desc(handle).bytes,

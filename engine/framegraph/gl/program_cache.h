@@ -17,9 +17,9 @@ class ProgramCache {
 public:
     explicit ProgramCache(gl::ShaderLibrary& library) : library_(library) {}
 
-    /// `second` is the fragment shader, or null for compute. CHECKs that shaders/variants.txt lists the program; `pass` is named
+    /// `files` are the stages in order. CHECKs that shaders/variants.txt lists the program; `pass` is named
     /// where it does not. Errors: it does not compile and has no last good version.
-    Result<const gl::Program*> find(std::string_view pass, const char* first, const char* second,
+    Result<const gl::Program*> find(std::string_view pass, std::span<const char* const> files,
                                     std::span<const Define> defines);
 
 private:

@@ -16,8 +16,8 @@ Result<void> TexelCheck::add(ProgramCache& programs, const gl::Texture& texture,
     const gl::TextureSpec& spec = texture.spec();
     const int kind = spec.target == GL_TEXTURE_3D ? 2 : spec.target == GL_TEXTURE_2D_ARRAY ? 1 : 0;
     const Define defines[] = {{"KIND", kind}};
-    Result<const gl::Program*> found =
-        programs.find("texel check", "common/count_invalid.comp", nullptr, defines);
+    const char* const files[] = {"common/count_invalid.comp"};
+    Result<const gl::Program*> found = programs.find("texel check", files, defines);
     if (!found.ok()) return found.error();
     const gl::Program& program = **found;
     const gl::ProgramResource* image = program.find("image");

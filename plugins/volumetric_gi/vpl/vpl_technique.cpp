@@ -89,6 +89,16 @@ uint32_t termBits(TermSet given, const Term (&terms)[4]) {
     return bits;
 }
 
+/// As the paper has it (docs/techniques/vpl.md, "As the paper prints it"): every walk's lights are gathered, one bound for all light, and what it takes away is
+/// followed one step in media, without the light that comes straight from a light there.
+VplSettings asInThePaper(VplSettings settings) {
+    settings.candidates = 1;
+    settings.surfaceClamp = settings.clamp;
+    settings.nearPaths = 0;
+    settings.incremental = false;
+    return settings;
+}
+
 bool converges(const plugin::FrameInputs& inputs) {
     return (inputs.view.data.flags & gpu::kViewConverge) != 0;
 }
@@ -99,14 +109,14 @@ void VplTechnique::makeLights(const plugin::FrameInputs& inputs) {
     const uint32_t generation = converges(inputs) ? inputs.view.data.frameIndex : 0;
     uint64_t order = fg::kHashStart;
     for (const uint64_t value :
-         {uint64_t(generation), uint64_t(inputs.view.data.seed), uint64_t(settings_.walks),
-          uint64_t(settings_.mapSide), uint64_t(settings_.maps), uint64_t(settings_.points),
-          uint64_t(settings_.fromSurfaces), uint64_t(settings_.fromMedia)})
+         {uint64_t(generation), uint64_t(inputs.view.data.seed), uint64_t(used_.walks),
+          uint64_t(used_.mapSide), uint64_t(used_.maps), uint64_t(used_.points),
+          uint64_t(used_.fromSurfaces), uint64_t(used_.fromMedia)})
         order = fg::mixHash(order, value);
     // Which lights matter changes with the media: where walks are to be kept, all are.
-    const bool inTurns = settings_.renewed > 0 && !settings_.incremental && !converges(inputs);
+    const bool inTurns = used_.renewed > 0 && !used_.incremental && !converges(inputs);
     const uint32_t candidates =
-        settings_.incremental || inTurns ? 1 : uint32_t(settings_.candidates);
+        used_.incremental || inTurns ? 1 : uint32_t(used_.candidates);
     order = fg::mixHash(order, candidates);
     if (candidates > 1) order = fg::mixHash(order, viewKey(inputs.view.data));
     const uint64_t walksKey = fg::mixHash(order, scene_.walksKey()),
@@ -114,18 +124,18 @@ void VplTechnique::makeLights(const plugin::FrameInputs& inputs) {
                    surfacesKey = fg::mixHash(order, scene_.surfacesKey());
     times_ = {};
     walksTraced_ = 0;
-    if (lightsKey == lightsKey_ && settings_.keep) return;
-    const WalkOrder what{uint32_t(settings_.walks) * candidates,
+    if (lightsKey == lightsKey_ && used_.keep) return;
+    const WalkOrder what{uint32_t(used_.walks) * candidates,
                          candidates,
                          inputs.view.data.seed,
                          generation,
-                         settings_.fromSurfaces,
-                         settings_.fromMedia};
-    if (inTurns && surfacesKey == turnsKey_ && settings_.keep) {
+                         used_.fromSurfaces,
+                         used_.fromMedia};
+    if (inTurns && surfacesKey == turnsKey_ && used_.keep) {
         renewSome(what, lightsKey);
         return;
     }
-    const bool anew = walksKey != walksKey_ || !settings_.keep;
+    const bool anew = walksKey != walksKey_ || !used_.keep;
     if (anew) {
         const Stopwatch watch(times_.walks);
         walks_ = traceWalks(scene_.scene(), scene_.emission(), what, 0, what.walks);
@@ -151,11 +161,11 @@ void VplTechnique::makeMaps(uint32_t generation) {
     const tracing::SurfaceScene& surfaces = *scene_.scene().surfaces;
     maps_.clear();
     points_ = {};
-    if (settings_.mapSide > 0 && settings_.maps == kVplMapsOfPoints)
-        points_ = makeSurfacePoints(surfaces, set_.positions, uint32_t(settings_.points),
+    if (used_.mapSide > 0 && used_.maps == kVplMapsOfPoints)
+        points_ = makeSurfacePoints(surfaces, set_.positions, uint32_t(used_.points),
                                     kPointSets, generation);
-    else if (settings_.mapSide > 0 && surfaces.triangleCount() > 0)
-        maps_ = makeVisibilityMaps(surfaces, set_, uint32_t(settings_.mapSide), generation);
+    else if (used_.mapSide > 0 && surfaces.triangleCount() > 0)
+        maps_ = makeVisibilityMaps(surfaces, set_, uint32_t(used_.mapSide), generation);
 }
 
 /// After a change of lights or media: so many walks a frame, in turn, until all are of the scene as it is. Maps of the other lights stay.
@@ -166,7 +176,7 @@ void VplTechnique::renewSome(const WalkOrder& order, uint64_t lightsKey) {
     }
     if (stale_ == 0) return;
     const uint32_t first = nextTurn_,
-                   count = std::min({uint32_t(settings_.renewed), stale_, order.walks - first});
+                   count = std::min({uint32_t(used_.renewed), stale_, order.walks - first});
     VplSet others;
     {
         const Stopwatch watch(times_.walks);
@@ -177,7 +187,7 @@ void VplTechnique::renewSome(const WalkOrder& order, uint64_t lightsKey) {
     replaceWalks(set_, first, others);
     if (points_.points.empty() && !maps_.empty()) {
         const Stopwatch watch(times_.maps);
-        const auto side = uint32_t(settings_.mapSide);
+        const auto side = uint32_t(used_.mapSide);
         const auto stride = std::ptrdiff_t(side) * side + 1;
         const std::vector<uint32_t> maps =
             makeVisibilityMaps(*scene_.scene().surfaces, others, side, order.generation);
@@ -207,10 +217,10 @@ void VplTechnique::choose(const plugin::FrameInputs& inputs, const WalkOrder& or
 
 /// By paths on the processor: in averaged frames alone, for they are noise that has to be averaged. Not where walks go through guesses of the media.
 bool VplTechnique::followsWhatIsMissed(const plugin::FrameInputs& inputs) const {
-    return settings_.nearPaths > 0 && std::max(settings_.clamp, settings_.surfaceClamp) > 0 &&
-           settings_.fromSurfaces && settings_.fromMedia &&
-           settings_.compensation == int32_t(gpu::kVplTraced) &&
-           settings_.show != int32_t(gpu::kVplShowLost) && converges(inputs) && !scene_.guessed();
+    return used_.nearPaths > 0 && std::max(used_.clamp, used_.surfaceClamp) > 0 &&
+           used_.fromSurfaces && used_.fromMedia &&
+           used_.compensation == int32_t(gpu::kVplTraced) &&
+           used_.show != int32_t(gpu::kVplShowLost) && converges(inputs) && !scene_.guessed();
 }
 
 void VplTechnique::makeNear(const plugin::FrameInputs& inputs) {
@@ -223,7 +233,7 @@ void VplTechnique::makeNear(const plugin::FrameInputs& inputs) {
     CompensationOrder order;
     order.surfaceFactor = gather_.surfaceFactor;
     order.mediaFactor = gather_.mediaFactor;
-    order.paths = uint32_t(settings_.nearPaths);
+    order.paths = uint32_t(used_.nearPaths);
     order.first = inputs.view.data.frameIndex * order.paths;
     order.onSurfaces = (inputs.terms & kIndirectOnSurfaces) != 0;
     order.inMedia = (inputs.terms & ~kIndirectOnSurfaces) != 0 && inputs.media.count > 0 &&
@@ -258,47 +268,49 @@ VplGather VplTechnique::gather(const plugin::FrameInputs& inputs) const {
         return uint32_t(std::clamp(std::max(double(wanted), std::ceil(least)), 1.0,
                                    double(std::max(params.walkCount, 1u))));
     };
-    params.classes = classes(settings_.classes, 2 * double(settings_.samples)); // with compensation
-    params.surfaceClasses = classes(settings_.surfaceClasses, 1);
-    params.mapSide = maps_.empty() && points_.points.empty() ? 0 : uint32_t(settings_.mapSide);
-    params.treeSize = settings_.mapSide > 0 ? uint32_t(scene_.tree().size()) : 0;
+    params.classes = classes(used_.classes, 2 * double(used_.samples)); // with compensation
+    params.surfaceClasses = classes(used_.surfaceClasses, 1);
+    params.mapSide = maps_.empty() && points_.points.empty() ? 0 : uint32_t(used_.mapSide);
+    params.treeSize = used_.mapSide > 0 ? uint32_t(scene_.tree().size()) : 0;
     // The bound follows from all lights of an average: what it takes away tends to nothing as frames come.
-    const double frames = converges(inputs) ? double(inputs.view.data.frameIndex) + 1 : 1;
+    const double frames =
+        converges(inputs) && !asPrinted() ? double(inputs.view.data.frameIndex) + 1 : 1;
     const double mean = meanDistanceOf(set_.positions, scene_.content(), frames);
     const auto squared = [](double x) { return float(x * x); };
-    params.clampSquared = squared(mean * double(settings_.clamp));
+    params.clampSquared = squared(mean * double(used_.clamp));
     // Lights in a lobe, whose solid angle goes with the fourth power of roughness, become more as frames come, though it narrows; so may what is gathered near
     // by. Between surfaces the bound may not: the distance d below which one light in d² outshines the average must fall slower than the root of the frames.
     const double finer = std::pow(frames, 1.0 / 6);
-    params.mediumClampSquared = squared(mean * double(settings_.surfaceClamp));
+    params.mediumClampSquared = squared(mean * double(used_.surfaceClamp));
     // Where paths bring what it takes away, it costs no light, and stays wide for less noise.
     params.nearLight = followsWhatIsMissed(inputs) ? 1 : 0;
     params.surfaceClampSquared = params.nearLight != 0
                                      ? squared(meanDistanceOf(set_.positions, scene_.content(), 1) *
-                                               double(settings_.surfaceClamp) / finer)
+                                               double(used_.surfaceClamp) / finer)
                                      : params.mediumClampSquared;
-    params.leastRoughness = float(double(settings_.roughness) / finer);
-    params.relaxed = float(double(settings_.relaxed) * finer);
+    params.leastRoughness = float(double(used_.roughness) / finer);
+    params.relaxed = float(double(used_.relaxed) * finer);
     const Bounds& content = scene_.content();
     const double radius = content.empty() ? 0 : 0.5 * glm::length(content.extent());
-    if (radius > 0) params.content = vec4(vec3(content.centre()), squared(1 / radius));
-    params.lost = settings_.show == int32_t(gpu::kVplShowLost) ? 1 : 0;
-    params.compensation = params.lost != 0 ? gpu::kVplClamped : uint32_t(settings_.compensation);
+    if (radius > 0 && !asPrinted()) params.content = vec4(vec3(content.centre()), squared(1 / radius));
+    params.lost = used_.show == int32_t(gpu::kVplShowLost) ? 1 : 0;
+    params.compensation = params.lost != 0 ? gpu::kVplClamped : uint32_t(used_.compensation);
     params.surfaceTerms =
         termBits(inputs.terms, {Term::LSSE, Term::LVSE, Term::LXSSE, Term::LXVSE});
     params.mediaTerms = termBits(inputs.terms, {Term::LSVE, Term::LVVE, Term::LXSVE, Term::LXVVE});
     // The closed form takes all light around a point for one.
     if (params.compensation == gpu::kVplClosedForm && params.mediaTerms != gpu::kVplAllTerms)
         params.compensation = gpu::kVplTraced;
-    params.lightsOfScene = inputs.lights.lightCount;
-    params.samples = uint32_t(settings_.samples);
+    params.lightsOfScene = asPrinted() ? 0 : inputs.lights.lightCount;
+    params.upToFreePath = asPrinted() ? 0 : 1;
+    params.samples = uint32_t(used_.samples);
     if (!grids.empty() && inputs.media.count > 0) {
-        params.depthSide = uint32_t(settings_.depthSide);
+        params.depthSide = uint32_t(used_.depthSide);
         params.gridsMinimum = vec4(vec3(grids.minimum), 0);
         params.gridsMaximum = vec4(vec3(grids.maximum), 0);
     }
-    gather.mediaFactor = 1 << settings_.march;
-    gather.surfaceFactor = 1 << settings_.surfaces;
+    gather.mediaFactor = 1 << used_.march;
+    gather.surfaceFactor = 1 << used_.surfaces;
     return gather;
 }
 
@@ -325,7 +337,8 @@ plugin::SettingsTable VplTechnique::settings() {
 
 plugin::FrameOutputs VplTechnique::addPasses(fg::FrameGraph& graph,
                                              const plugin::FrameInputs& inputs) {
-    if (Result<void> ready = scene_.update(inputs, settings_.incremental); !ready.ok()) {
+    used_ = asPrinted() ? asInThePaper(settings_) : settings_;
+    if (Result<void> ready = scene_.update(inputs, used_.incremental); !ready.ok()) {
         if (said_ != ready.message()) host().log(("vpl: " + ready.message()).c_str());
         said_ = ready.message();
         return {};
@@ -354,7 +367,7 @@ plugin::FrameOutputs VplTechnique::addPasses(fg::FrameGraph& graph,
 
 fg::BufferHandle VplTechnique::addStatistics(fg::FrameGraph& graph) {
     statistics_ = {float(set_.lights.size()),
-                   float(settings_.walks),
+                   float(used_.walks),
                    float(set_.cutOff),
                    float(walksTraced_),
                    times_.walks,
@@ -384,11 +397,11 @@ fg::BufferHandle VplTechnique::addStatistics(fg::FrameGraph& graph) {
 fg::TextureHandle VplTechnique::addDebugView(fg::FrameGraph& graph,
                                               const plugin::FrameInputs& inputs,
                                               fg::TextureHandle color) {
-    const float radius = settings_.show == 0
+    const float radius = used_.show == 0
                              ? 0.0f
                              : float(kBall * meanDistanceOf(set_.positions, scene_.content(), 1));
     const fg::TextureHandle shown =
-        addVplShow(graph, inputs, settings_, buffers_, gather_.params, radius, gathered_, color);
+        addVplShow(graph, inputs, used_, buffers_, gather_.params, radius, gathered_, color);
     buffers_ = {}; // of this frame alone
     gathered_ = {};
     return shown;

@@ -37,7 +37,7 @@ private:
     void makeNear(const plugin::FrameInputs& inputs);
     [[nodiscard]] VplGather gather(const plugin::FrameInputs& inputs) const;
 
-    VplSettings settings_{};
+    VplSettings settings_{}, used_{}; // used_: in this frame, as gi.mode has it
     TracedScene scene_;
     VplSet set_;
     std::vector<uint32_t> maps_; // of rays
