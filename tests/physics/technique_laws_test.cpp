@@ -70,18 +70,19 @@ protected:
 };
 
 TEST_P(TechniqueLaws, TwiceTheLightIsTwiceThePicture) {
-    const Image one = render(corner(50, kFog)).beauty;
+    const Image one = render(corner(1, kFog)).beauty;
     EXPECT_GT(meanOf(one), 0);
-    Image doubled = one;
-    for (float& value : doubled.pixels) value *= 2;
-    const ImageMetrics found = compareImages(render(corner(100, kFog)).beauty, doubled).value();
-    // A power of two changes no digit, but where light is rounded to steps that do not depend on it: less than 1e-5 of the light.
-    EXPECT_LT(found.relmse, 1e-10);
-    EXPECT_NEAR(found.energy, 1, 1e-5);
-    // From starlight to a lightning: choices by the power of light may fall otherwise for some of a million.
-    for (const double light : {1e-15, 1e6})
-        EXPECT_NEAR(meanOf(render(corner(light, kFog)).beauty) / light * 50 / meanOf(one), 1, 1e-4)
-            << light;
+    for (const double light : {2.0, double(1 << 20), 1e6, 1e-15}) {
+        Image expected = one;
+        for (float& value : expected.pixels) value *= float(light);
+        const ImageMetrics found =
+            compareImages(render(corner(light, kFog)).beauty, expected).value();
+        // A power of two changes no digit, but where light is rounded to steps that do not grow with it: 1e-5 of the light at most. With others
+        // a choice by the power of light falls otherwise for one in a million.
+        const bool exact = std::exp2(std::round(std::log2(light))) == light;
+        EXPECT_LT(found.relmse, exact ? 1e-10 : 1e-6) << light;
+        EXPECT_NEAR(found.energy, 1, exact ? 1e-5 : 1e-4) << light;
+    }
 }
 
 TEST_P(TechniqueLaws, AMediumThatIsNothingChangesNothing) {
@@ -133,14 +134,14 @@ TEST_P(TechniqueLaws, TheSameFrameHasTheSameBitsWhateverWasBefore) {
 }
 
 TEST_P(TechniqueLaws, AClosedRoomStaysDark) {
-    // Walls as thick as half a cell of a lattice, or of a few texels of a map: what comes through is not for want of resolution. Turned, they
-    // lie askew to everything.
-    for (const double angle : {0.0, 0.3}) {
-        const double inside = meanOf(render(sealedRoom(0.3, angle, true)).beauty),
-                     outside = meanOf(render(sealedRoom(0.3, angle, false)).beauty);
-        printf("turned by %.1f: inside %.2e of outside\n", angle, inside / outside);
+    // Walls far thinner than a cell of a lattice or a texel of a map, and as thick as half a cell; turned, they lie askew to everything. A wall that
+    // leaks brings some tenths of the light outside; half a percent is what cells and texels on both sides of one may let by.
+    for (const double thickness : {0.02, 0.3}) {
+        const double inside = meanOf(render(sealedRoom(thickness, 0.3, true)).beauty),
+                     outside = meanOf(render(sealedRoom(thickness, 0.3, false)).beauty);
+        printf("walls of %.2f m: inside %.2e of outside\n", thickness, inside / outside);
         EXPECT_GT(outside, 0);
-        EXPECT_LT(inside, 1e-3 * outside);
+        EXPECT_LT(inside, 5e-3 * outside);
     }
 }
 
