@@ -28,7 +28,7 @@ enum class CompareMode : uint32_t {
     Greater = 0,
     Less = 1
 }; // Greater: reversed z, of cameras and shadow maps; Less: plain z
-enum class Topology : uint32_t { Triangles = 0, Lines = 1, Points = 2, Patches = 3 };
+enum class Topology : uint32_t { Triangles = 0, Lines = 1, Points = 2 };
 
 /// Fixed-function state of one raster command.
 struct RasterState {
@@ -36,8 +36,8 @@ struct RasterState {
     BlendMode blend = BlendMode::Replace;
     DepthMode depth = DepthMode::Off;
     CompareMode compare = CompareMode::Greater;
-    Topology topology = Topology::Triangles; // Patches where a program tessellates, else never
-    uint32_t patchVertices = 3;              // of one patch
+    Topology topology = Topology::Triangles; // of what does not tessellate
+    uint32_t patchVertices = 3;              // of the patches of what does
     bool frontFaceClockwise = false;         // true for mirrored transforms
     bool depthClamp = false;
     float slopeBias = 0, constantBias = 0; // glPolygonOffset factor and units

@@ -251,59 +251,29 @@ TEST_P(ExecutorCaptureTest, AMixOfPrimitivesIsRefused) {
     EXPECT_THAT(failure(), HasSubstr("either points, lines or triangles"));
 }
 
-TEST_P(ExecutorCaptureTest, TessellationNeedsPatchesAndPatchesNeedTessellation) {
-    begin();
-    pass([](const Pass& d, PassContext& c) {
-        RasterState state;
-        state.topology = Topology::Patches;
-        c.raster({.vertex = "capture/number.vert"}).state(state).capture(d.numbers).draw(3);
-    });
-    EXPECT_THAT(
-        failure(),
-        HasSubstr(
-            "pass 'surfelize' draws patches with 'capture/number.vert', which does not tessellate"));
+TEST_P(ExecutorCaptureTest, HalfATessellationAndPatchesThatAreTooLargeAreNamed) {
+    library().addSource("test/plain.vert", "void main() { gl_Position = vec4(0); }\n");
+    library().addSource("test/plain.tesc", "layout(vertices = 3) out;\nvoid main() {}\n");
+    library().addSource("test/plain.tese", "layout(triangles, point_mode) in;\n"
+                                           "layout(xfb_offset = 0) out vec4 a;\n"
+                                           "void main() { a = vec4(0); }\n");
     begin();
     pass([](const Pass&, PassContext& c) {
         c.raster({.vertex = "capture/corner.vert", .tessControl = "capture/level.tesc"});
     });
     EXPECT_THAT(failure(), HasSubstr("'capture/corner.vert' with one stage of tessellation"));
     begin();
-    const BufferHandle corners = uploaded("corners", std::vector<float>(12));
-    struct Patches {
-        BufferHandle corners, numbers;
+    pass([](const Pass& d, PassContext& c) {
         RasterState state;
-    };
-    const auto tessellates = [&](const RasterState& state) {
-        graph().addPass<Patches>(
-            "surfelize",
-            [&](Builder& b, Patches& d) {
-                d.corners = b.read(corners);
-                d.numbers = b.create("numbers", BufferDesc{1200}, Access::Capture);
-                d.state = state;
-                b.sideEffect();
-            },
-            [](const Patches& d, PassContext& c) {
-                const float levels[4] = {1, 1, 1, 1};
-                c.raster({.vertex = "capture/corner.vert",
-                          .tessControl = "capture/level.tesc",
-                          .tessEvaluation = "capture/point.tese"},
-                         {{"POINTS", 1}})
-                    .bind("Corners", d.corners)
-                    .params(levels)
-                    .state(d.state)
-                    .capture(d.numbers)
-                    .draw(3);
-            });
-    };
-    tessellates(points());
-    EXPECT_THAT(failure(), HasSubstr("RasterState::topology must be Patches"));
-    begin();
-    (void)uploaded("corners", std::vector<float>(12));
-    RasterState tooLarge;
-    tooLarge.topology = Topology::Patches;
-    tooLarge.patchVertices = 1000;
-    tessellates(tooLarge);
-    EXPECT_THAT(failure(), HasSubstr("draws patches of 1000 vertices"));
+        state.patchVertices = 1000;
+        c.raster({.vertex = "test/plain.vert",
+                  .tessControl = "test/plain.tesc",
+                  .tessEvaluation = "test/plain.tese"})
+            .state(state)
+            .capture(d.numbers)
+            .draw(3);
+    });
+    EXPECT_THAT(failure(), HasSubstr("pass 'surfelize' draws patches of 1000 vertices"));
 }
 
 TEST_P(ExecutorCaptureTest, AfterAFailureWhileCapturingTheNextFrameIsFine) {

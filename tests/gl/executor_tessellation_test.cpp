@@ -84,15 +84,12 @@ protected:
                 d.asPoints = asPoints ? 1 : 0;
             },
             [](const Pass& d, PassContext& c) {
-                RasterState state;
-                state.topology = Topology::Patches;
                 c.raster({.vertex = "capture/corner.vert",
                           .tessControl = "capture/level.tesc",
                           .tessEvaluation = "capture/point.tese"},
                          {{"POINTS", d.asPoints}})
                     .bind("Corners", d.corners)
                     .params(d.levels)
-                    .state(state)
                     .capture(d.surfels, d.count)
                     .draw(d.vertices);
             });
@@ -198,6 +195,42 @@ TEST_P(ExecutorTessellationTest, WithoutPointModeTrianglesAreCapturedAndCounted)
         }
         EXPECT_NEAR(area, 1, 1e-4); // fixed point, as above
     }
+}
+
+TEST_P(ExecutorTessellationTest, PatchesHaveAsManyVerticesAsTheStateSays) {
+    library().addSource("test/plain.vert", "void main() { gl_Position = vec4(0); }\n");
+    library().addSource("test/quad.tesc",
+                        "layout(vertices = 4) out;\nvoid main() {\n"
+                        "  for (int i = 0; i < 4; ++i) gl_TessLevelOuter[i] = 3.0;\n"
+                        "  gl_TessLevelInner[0] = gl_TessLevelInner[1] = 3.0; }\n");
+    library().addSource("test/quad.tese", "layout(quads, equal_spacing, point_mode) in;\n"
+                                          "layout(xfb_offset = 0) out float patchNumber;\n"
+                                          "void main() { patchNumber = float(gl_PrimitiveID); }\n");
+    struct Quads {
+        BufferHandle points, count;
+    };
+    begin();
+    const Quads& pass = graph().addPass<Quads>(
+        "quads",
+        [](Builder& b, Quads& d) {
+            d.points = b.create("points", BufferDesc{4 * 64}, Access::Capture);
+            d.count = b.create("count", BufferDesc{4}, Access::Capture);
+        },
+        [](const Quads& d, PassContext& c) {
+            RasterState state;
+            state.patchVertices = 4;
+            c.raster({.vertex = "test/plain.vert",
+                      .tessControl = "test/quad.tesc",
+                      .tessEvaluation = "test/quad.tese"})
+                .state(state)
+                .capture(d.points, d.count)
+                .draw(12);
+        });
+    graph().markOutput(pass.points);
+    graph().markOutput(pass.count);
+    run();
+    EXPECT_EQ(valuesOf<uint32_t>(pass.count)[0], 3u * 4 * 4) << "three patches of 4 by 4 points";
+    for (size_t i = 0; i < 48; ++i) EXPECT_EQ(valuesOf<float>(pass.points)[i], float(i / 16));
 }
 
 TEST_P(ExecutorTessellationTest, AChangedStageIsMadeAnew) {

@@ -91,17 +91,18 @@ TEST(Job, WhatTheWorkThrowsComesOutOfTake) {
     EXPECT_THROW((void)job.take(), std::runtime_error);
 }
 
-/// Three nodes, each of which the reader reports before it reads it.
-std::string writeGltf() {
-    const std::string path = (scratchDir("app-load") / "three.gltf").string();
-    std::ofstream(path)
-        << R"({"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0, 1, 2]}],
-        "nodes": [{"name": "a"}, {"name": "b"}, {"name": "c"}]})";
-    return path;
+/// Three nodes with a file each, which the reader names before it reads it.
+std::string writeScene() {
+    const std::filesystem::path folder = scratchDir("app-load");
+    std::ofstream(folder / "empty.gltf")
+        << R"({"asset": {"version": "2.0"}, "nodes": [{"name": "a"}]})";
+    std::ofstream(folder / "a.scene.json") << R"({"tyndall": 1, "nodes": [
+        {"name": "a", "gltf": "empty.gltf"}, {"name": "b", "gltf": "empty.gltf"}, {"name": "c", "gltf": "empty.gltf"}]})";
+    return (folder / "a.scene.json").string();
 }
 
 TEST(SceneLoad, ACancelledOneStopsAtOnceAndLeavesTheSceneAsItWas) {
-    const std::string path = writeGltf();
+    const std::string path = writeScene();
     int steps = 0, stepsUntilTheEnd = 0;
     Scene scene;
     JobControl whole(

@@ -22,7 +22,7 @@ constexpr const char* kScene = R"({
   "nodes": [
     {"name": "floor", "primitive": {"shape": "box", "size": [4, 0.1, 4]}},
     {"name": "lamp", "light": {"type": "point", "intensity": 50}, "translation": [0, 2, 0]},
-    {"name": "haze", "medium": {"type": "homogeneous", "shape": "height", "scaleHeight": 2, "scattering": [0.1, 0.1, 0.1], "absorption": [0, 0, 0]}},
+    {"name": "haze", "medium": {"type": "homogeneous", "shape": "height", "scaleHeight": 2, "scattering": [0.1, 0.1, 0.1], "absorption": [0.05, 0.05, 0.05]}},
     {"name": "eye", "camera": {"type": "perspective", "yfov": 0.8, "znear": 0.05}, "translation": [0, 1, 5]}
   ],
   "camera": "eye"

@@ -113,8 +113,7 @@ private:
     const gl::Buffer* argumentsAt(BufferHandle arguments, uint64_t byteOffset, size_t bytes,
                                   const char* place) const;
     void prepareDraw(GLuint vertexArray);
-    void checkTopology() const;
-    void beginCapture();
+    [[nodiscard]] GLenum topology() const;
     void setDiscard(bool on);
     void applyState();
     [[nodiscard]] std::string_view passName() const { return world_.graph.passes()[pass_].name; }

@@ -14,16 +14,6 @@ namespace {
 
 void enable(GLenum capability, bool on) { on ? glEnable(capability) : glDisable(capability); }
 
-GLenum glTopology(Topology topology) {
-    switch (topology) {
-    case Topology::Triangles: return GL_TRIANGLES;
-    case Topology::Lines: return GL_LINES;
-    case Topology::Points: return GL_POINTS;
-    case Topology::Patches: return GL_PATCHES;
-    }
-    return GL_TRIANGLES;
-}
-
 } // namespace
 
 // --- targets and state ---
@@ -68,9 +58,13 @@ void GlPassContext::rasterState(const RasterState& state) {
 void GlPassContext::applyState() {
     if (stateApplied_) return;
     stateApplied_ = true;
-    checkTopology();
-    if (state_.topology == Topology::Patches)
+    if (program_->tessellatesTo()) {
+        const auto most = uint32_t(gl::currentCapabilities().limits.patchVertices);
+        CHECK(state_.patchVertices >= 1 && state_.patchVertices <= most,
+              fmt::format("pass '{}' draws patches of {} vertices with '{}': a patch has 1 to {}",
+                          passName(), state_.patchVertices, program_->name(), most));
         glPatchParameteri(GL_PATCH_VERTICES, GLint(state_.patchVertices));
+    }
     const bool depthWrites = state_.depth == DepthMode::TestAndWrite;
     if (depthWrites && depthTarget_)
         check(depthTarget_.resource, depthTarget_.version, Touch::DepthAttachment, "depth target");
@@ -123,27 +117,14 @@ void GlPassContext::capture(BufferHandle into, BufferHandle count, uint64_t coun
                  countOffset);
 }
 
-void GlPassContext::beginCapture() {
-    capture_.begin(program_->tessellatesTo().value_or(glTopology(state_.topology)));
-}
-
-void GlPassContext::checkTopology() const {
-    const bool patches = state_.topology == Topology::Patches;
-    const bool tessellates = program_->tessellatesTo().has_value();
-    CHECK(patches || !tessellates,
-          fmt::format(
-              "pass '{}' draws with '{}', which tessellates: RasterState::topology must be Patches",
-              passName(), program_->name()));
-    CHECK(
-        !patches || tessellates,
-        fmt::format(
-            "pass '{}' draws patches with '{}', which does not tessellate: it needs both stages of tessellation",
-            passName(), program_->name()));
-    if (!patches) return;
-    const auto most = uint32_t(gl::currentCapabilities().limits.patchVertices);
-    CHECK(state_.patchVertices >= 1 && state_.patchVertices <= most,
-          fmt::format("pass '{}' draws patches of {} vertices with '{}': a patch has 1 to {}",
-                      passName(), state_.patchVertices, program_->name(), most));
+GLenum GlPassContext::topology() const {
+    if (program_->tessellatesTo()) return GL_PATCHES;
+    switch (state_.topology) {
+    case Topology::Triangles: return GL_TRIANGLES;
+    case Topology::Lines: return GL_LINES;
+    case Topology::Points: return GL_POINTS;
+    }
+    return GL_TRIANGLES;
 }
 
 void GlPassContext::prepareDraw(GLuint vertexArray) {
@@ -160,14 +141,14 @@ void GlPassContext::prepareDraw(GLuint vertexArray) {
     applyState();
     if (!hasTargets_) glBindFramebuffer(GL_FRAMEBUFFER, world_.framebuffers.get({}));
     setDiscard(!hasTargets_);
-    if (capture_.isAimed()) beginCapture();
+    if (capture_.isAimed()) capture_.begin(program_->tessellatesTo().value_or(topology()));
     glBindVertexArray(vertexArray);
 }
 
 void GlPassContext::draw(uint32_t vertexCount, uint32_t instanceCount, uint32_t firstVertex) {
     if (!program_ || vertexCount == 0 || instanceCount == 0) return;
     prepareDraw(emptyVertexArray_.id());
-    glDrawArraysInstanced(glTopology(state_.topology), GLint(firstVertex), GLsizei(vertexCount),
+    glDrawArraysInstanced(topology(), GLint(firstVertex), GLsizei(vertexCount),
                           GLsizei(instanceCount));
 }
 
@@ -177,8 +158,7 @@ void GlPassContext::drawIndirect(BufferHandle arguments, uint64_t byteOffset) {
     if (!program_ || !buffer) return;
     prepareDraw(emptyVertexArray_.id());
     glBindBuffer(GL_DRAW_INDIRECT_BUFFER, buffer->id());
-    glDrawArraysIndirect(glTopology(state_.topology),
-                         reinterpret_cast<const void*>(uintptr_t(byteOffset)));
+    glDrawArraysIndirect(topology(), reinterpret_cast<const void*>(uintptr_t(byteOffset)));
 }
 
 void GlPassContext::drawGeometry(StaticGeometry geometry, uint32_t firstIndex, uint32_t indexCount,
@@ -187,15 +167,14 @@ void GlPassContext::drawGeometry(StaticGeometry geometry, uint32_t firstIndex, u
     const StaticGeometryEntry& entry = world_.statics.geometry(geometry.id);
     prepareDraw(entry.vertexArray.id());
     if (!entry.indexed) {
-        glDrawArraysInstancedBaseInstance(glTopology(state_.topology), GLint(firstIndex),
-                                          GLsizei(indexCount), GLsizei(instanceCount),
-                                          baseInstance);
+        glDrawArraysInstancedBaseInstance(topology(), GLint(firstIndex), GLsizei(indexCount),
+                                          GLsizei(instanceCount), baseInstance);
         return;
     }
     const uintptr_t offset =
         uintptr_t(entry.indexOffsetBytes) + uintptr_t(firstIndex) * sizeof(uint32_t);
-    glDrawElementsInstancedBaseInstance(glTopology(state_.topology), GLsizei(indexCount),
-                                        GL_UNSIGNED_INT, reinterpret_cast<const void*>(offset),
+    glDrawElementsInstancedBaseInstance(topology(), GLsizei(indexCount), GL_UNSIGNED_INT,
+                                        reinterpret_cast<const void*>(offset),
                                         GLsizei(instanceCount), baseInstance);
 }
 
