@@ -13,14 +13,13 @@ namespace {
 
 constexpr int kLargestPicture = 16384; // pixels along an edge: what every GL 4.5 driver takes
 
-MediaSet kindOf(MediumKind kind) {
-    switch (kind) {
+MediaSet kindOf(const Medium& medium) {
+    switch (medium.kind) {
     case MediumKind::Everywhere:
     case MediumKind::Box:
     case MediumKind::Sphere: return kShapeMedia;
     case MediumKind::Height: return kHeightMedia;
-    case MediumKind::Grid: return kGridMedia;
-    case MediumKind::Particles: return kParticleMedia;
+    case MediumKind::Grid: return medium.particles ? kParticleMedia : kGridMedia;
     }
     return 0;
 }
@@ -36,7 +35,7 @@ SceneTraits traitsOf(const Scene& scene, const GpuScene& surfaces, const LightSy
     if (!mediaEnabled) return traits;
     traits.kinds = 0;
     for (const Medium& medium : scene.media) {
-        if (maximumOf(medium.scattering) > 0) traits.kinds |= kindOf(medium.kind);
+        if (maximumOf(medium.scattering) > 0) traits.kinds |= kindOf(medium);
         traits.media |= maximumOf(medium.extinction()) > 0 || maximumOf(medium.emission) > 0;
         traits.scatteringMedia |= maximumOf(medium.scattering) > 0;
         traits.lights |=
