@@ -3,38 +3,11 @@
 #include <algorithm>
 #include <bit>
 
-#include "framegraph/hash.h"
+#include "plugin/cache_key.h"
+#include "plugin/cached_upload.h"
 
 namespace tyndall::volumetric_gi {
 namespace {
-
-/// One buffer of CPU data, uploaded where `key` is new. Sizes are rounded up to powers of two, so that few are ever made.
-fg::BufferHandle addUpload(fg::FrameGraph& graph, const char* name, const void* data, size_t bytes,
-                           uint64_t key) {
-    struct Data {
-        fg::BufferHandle buffer;
-        const void* data;
-        size_t bytes;
-    };
-    return graph
-        .addPass<Data>(
-            name,
-            [&](fg::Builder& builder, Data& pass) {
-                pass.buffer = builder.create(
-                    name, fg::BufferDesc{std::bit_ceil(std::max<size_t>(bytes, 256))},
-                    fg::Access::TransferWrite);
-                pass.data = data;
-                pass.bytes = bytes;
-                builder.cacheBy(key);
-            },
-            [](const Data& pass, fg::PassContext& context) {
-                if (pass.bytes > 0)
-                    context.upload(pass.buffer, 0, pass.data, pass.bytes);
-                else
-                    context.clearBuffer(pass.buffer, 0);
-            })
-        .buffer;
-}
 
 /// Grids are marched in steps even where frames are averaged: cell by cell a ray takes more rounds of loops than llvmpipe grants it.
 int32_t steppedKinds(const MediaResources& media, bool towardsLights) {
@@ -219,7 +192,7 @@ fg::BufferHandle addSplattedMaps(fg::FrameGraph& graph, const VplBuffers& buffer
             "gi.vpl.maps",
             [&](fg::Builder& builder, Data& data) {
                 data.places = builder.read(places);
-                data.triangles = builder.read(buffers.triangles);
+                data.triangles = builder.read(buffers.traced.triangles);
                 data.points = builder.read(points);
                 data.pointParams = pointParams;
                 data.params = params;
@@ -236,7 +209,7 @@ fg::BufferHandle addSplattedMaps(fg::FrameGraph& graph, const VplBuffers& buffer
                 command.params(data.params, "Vpl")
                     .params(data.pointParams, "Points")
                     .bind("VplPlaces", data.places)
-                    .bind("VplTriangles", data.triangles)
+                    .bind("TracedTriangles", data.triangles)
                     .bind("VplPoints", data.points)
                     .bind("VplMaps", data.maps)
                     .dispatch(std::min(data.params.lightCount, kRow),
@@ -251,8 +224,7 @@ VplBuffers readVpls(fg::Builder& builder, const VplBuffers& buffers) {
     return {builder.read(buffers.lights),
             builder.read(buffers.walks),
             builder.read(buffers.maps),
-            builder.read(buffers.triangles),
-            builder.read(buffers.tree),
+            readTraced(builder, buffers.traced),
             builder.read(buffers.depths),
             {},
             {}};
@@ -261,13 +233,12 @@ VplBuffers readVpls(fg::Builder& builder, const VplBuffers& buffers) {
 VplBuffers addVplUpload(fg::FrameGraph& graph, const plugin::FrameInputs& inputs,
                         const VplUpload& upload, const gpu::VplParams& params) {
     const auto add = [&](const char* name, const auto& values, uint64_t key) {
-        return addUpload(graph, name, values.data(), values.size() * sizeof(values[0]), key);
+        return addCachedUpload(graph, name, values, key);
     };
     VplBuffers buffers;
     buffers.lights = add("gi.vpl.lights", upload.set->lights, upload.lightsKey);
     buffers.walks = add("gi.vpl.walks", upload.set->walks, upload.mapsKey);
-    buffers.triangles = add("gi.vpl.triangles", *upload.triangles, upload.trianglesKey);
-    buffers.tree = add("gi.vpl.tree", *upload.tree, upload.trianglesKey);
+    buffers.traced = upload.traced;
     buffers.nearSurfaces = add("gi.vpl.nearSurfaces", *upload.nearSurfaces, upload.nearKey);
     buffers.nearMedia = add("gi.vpl.nearMedia", *upload.nearMedia, upload.nearKey);
     if (upload.points->points.empty()) {
@@ -280,7 +251,7 @@ VplBuffers addVplUpload(fg::FrameGraph& graph, const plugin::FrameInputs& inputs
                                        params, upload.mapsKey);
     }
     // Sizes are rounded up, so that the buffer's alone does not tell maps of one side from those of another.
-    const uint64_t depthsKey = fg::mixHash(upload.lightsKey, params.depthSide);
+    const uint64_t depthsKey = cacheKey(upload.lightsKey, params.depthSide);
     buffers.depths = addDepthMaps(graph, inputs, buffers.lights, depthsKey, params);
     return buffers;
 }
