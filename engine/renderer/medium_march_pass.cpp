@@ -76,8 +76,8 @@ MediumMarch addStage(fg::FrameGraph& graph, const MediaFrame& frame,
             stage == MarchStage::Spread ? "media.upsample" : "media.march",
             [&](fg::Builder& builder, MarchData& data) {
                 if (skip) return builder.skip(skip);
-                data.march = readMarch(builder, stage, inputs.view, frame.resources, inputs.depth,
-                                       params);
+                data.march =
+                    readMarch(builder, stage, inputs.view, frame.resources, inputs.depth, params);
                 if (params.flags & gpu::kMarchInScatter)
                     data.lights = readLights(builder, inputs.lights);
                 if (before) data.before = readImages(builder, before);
