@@ -39,10 +39,9 @@ inline fg::TextureDesc marchPicture(const MarchPass& pass) {
                          (pass.view.height + factor - 1) / factor);
 }
 
+/// Binds what every stage's shader names; who marches binds the media beside it.
 template <typename Command> Command& bindMarch(Command& command, const MarchPass& pass) {
-    bindView(command, pass.view);
-    if (pass.media.count > 0) bindMedia(command, pass.media);
-    return command.params(pass.params).bind("depth", pass.depth);
+    return bindView(command, pass.view).params(pass.params).bind("depth", pass.depth);
 }
 
 /// Adds the stages one after the other. `add(stage, before)` adds one and returns what it writes, of which `before` is the last stage's; nothing (false) where

@@ -56,6 +56,7 @@ void record(const MarchData& data, fg::PassContext& context) {
                                     {"MEDIA_KINDS", mediaKinds(media, inScatter)},
                                     {"SOFT_SHADOWS", soft}});
     if (inScatter) bindLights(command, data.lights);
+    bindMedia(command, media);
     bindMarch(command, data.march).bind("transmittance", data.result.transmittance);
     if (inScatter) command.bind("inScatter", data.result.inScatter);
     if (emission) command.bind("emission", data.result.emission);

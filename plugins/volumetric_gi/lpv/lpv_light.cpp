@@ -59,6 +59,7 @@ fg::TextureHandle addMarch(fg::FrameGraph& graph, const plugin::FrameInputs& inp
                     pass.stage == MarchStage::Spread ? "gi/lpv/upsample.comp" : "gi/lpv/march.comp",
                     {{"PHASE_GROUPS", int32_t(pass.media.phaseGroups)},
                      {"MEDIA_KINDS", mediaKinds(pass.media, false)}});
+                bindMedia(command, pass.media);
                 bindLight(command, data.light, data.levels);
                 bindLightMarch(command, data.march).dispatchOver(data.march.light);
             })

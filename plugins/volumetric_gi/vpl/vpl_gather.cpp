@@ -50,7 +50,10 @@ fg::ComputeCommand begin(const GatherData& data, fg::PassContext& context, const
                  {"SOFT_SHADOWS",
                   0}, // of lights that compensation gathers: what they light is spread anyway
                  {"COMPENSATION", media ? int32_t(mode) : 0}});
-    if (media) bindLights(command, data.sceneLights);
+    if (media) {
+        bindLights(command, data.sceneLights);
+        bindMedia(command, of);
+    }
     bindVpls(command, data.lights, data.params);
     return command;
 }
@@ -58,6 +61,12 @@ fg::ComputeCommand begin(const GatherData& data, fg::PassContext& context, const
 /// Light is never even all around a surface: that mode is for media alone.
 uint32_t surfaceMode(const GatherData& data) {
     return data.params.compensation == gpu::kVplTraced ? gpu::kVplTraced : gpu::kVplClamped;
+}
+
+/// What all shaders of surfaces name.
+fg::ComputeCommand& bindSurfaces(fg::ComputeCommand& command, const GatherData& data) {
+    bindView(command, data.march.view).params(data.march.params);
+    return bindGBuffer(command, data.gbuffer);
 }
 
 constexpr LightMarchNames kMarchNames{"gi.vpl.march", "gi.vpl.upsample", "gi.vpl.refine",
@@ -231,7 +240,7 @@ fg::TextureHandle addVplSurfaces(fg::FrameGraph& graph, const plugin::FrameInput
                 },
                 [](const GatherData& data, fg::PassContext& context) {
                     auto command = begin(data, context, "gi/vpl/surfaces.comp", surfaceMode(data));
-                    bindGBuffer(bindMarch(command, data.march), data.gbuffer)
+                    bindSurfaces(command, data)
                         .bind("gathered", data.before ? data.before : data.gbuffer.depth)
                         .bind("surfaceLight", data.result)
                         .dispatchOver(data.result);
@@ -256,7 +265,7 @@ fg::TextureHandle addVplSurfaces(fg::FrameGraph& graph, const plugin::FrameInput
                 },
                 [](const GatherData& data, fg::PassContext& context) {
                     auto command = context.compute("gi/vpl/upsample_surfaces.comp");
-                    bindGBuffer(bindMarch(command, data.march), data.gbuffer)
+                    bindSurfaces(command, data)
                         .params(data.params, "Vpl")
                         .bind("squares", data.before)
                         .bind("VplNear", data.lights.nearSurfaces)
