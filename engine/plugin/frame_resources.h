@@ -71,6 +71,23 @@ template <typename Command> Command& bindView(Command& command, const ViewResour
     return command.params(view.data, "View");
 }
 
+/// Declares that a pass reads the surfaces, but for their emission: whoever includes shaders/common/receiver.glsl. The result is what
+/// bindGBuffer() takes.
+inline GBuffer readGBuffer(fg::Builder& builder, const GBuffer& gbuffer) {
+    return {builder.read(gbuffer.depth),
+            builder.read(gbuffer.normal),
+            builder.read(gbuffer.base),
+            builder.read(gbuffer.material),
+            {}};
+}
+
+template <typename Command> Command& bindGBuffer(Command& command, const GBuffer& gbuffer) {
+    return command.bind("gbufferDepth", gbuffer.depth)
+        .bind("gbufferNormal", gbuffer.normal)
+        .bind("gbufferBase", gbuffer.base)
+        .bind("gbufferMaterial", gbuffer.material);
+}
+
 /// Declares that a pass reads the media: whoever includes shaders/media/density.glsl, optical_depth.glsl or march.glsl. Only
 /// where `media.count` > 0. Keep what it returns in the pass's data, for bindMedia().
 inline MediaResources readMedia(fg::Builder& builder, const MediaResources& media) {
