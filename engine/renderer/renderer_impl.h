@@ -59,7 +59,6 @@ struct Renderer::Impl {
     FrameOrder order;
     FrameImages images;
     fg::TextureHandle inspected;
-    float ev100 = 0;
 
     void registerSettings();
     Result<void> updateScene(const FrameRequest& request, const dmat4& worldFromCamera,

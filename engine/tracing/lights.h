@@ -50,7 +50,6 @@ public:
     [[nodiscard]] const GlowSource& glow() const { return glow_; }
     [[nodiscard]] const EnvironmentSource& environment() const { return environment_; }
     [[nodiscard]] bool black() const;
-    [[nodiscard]] size_t emittingTriangles() const { return emitters_.size(); }
 
     /// From a point. `constantEnvironment`: whether to aim at an environment that is the same all round.
     void choose(const dvec3& from, bool constantEnvironment, LightChoice& choice) const;

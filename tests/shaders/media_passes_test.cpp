@@ -113,7 +113,7 @@ protected:
         addLight(light);
     }
     void addLight(gpu::LightData light) {
-        light.shadowIndex = light.opticalDepthIndex = -1;
+        light.shadowIndex = -1;
         lights.push_back(light);
     }
 

@@ -63,7 +63,7 @@ uint64_t LpvTechnique::sourceKey(const plugin::FrameInputs& inputs, uint64_t pla
         // where its shadows and optical depths lie.
         gpu::LightData light = inputs.lightData[i];
         light.samplePoint = vec4(0);
-        light.shadowIndex = light.opticalDepthIndex = 0;
+        light.shadowIndex = 0;
         key = fg::hashName({reinterpret_cast<const char*>(&light), sizeof(light)}, key);
     }
     return key;
