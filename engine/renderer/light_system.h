@@ -64,8 +64,7 @@ private:
         gpu::LightData data{};
         int node = kNone;
         bool castsShadows = true;
-        double strength =
-            0; // candela or lux, the largest channel: not a flux, but what a facing surface gets
+        double strength = 0; // candela or lux, the largest channel: at a facing surface, no flux
         float reach = 0;     // metres from its centre; 0: everywhere
     };
     void collect(const LightFrame& frame);

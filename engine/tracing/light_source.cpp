@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/check.h"
+#include "scene/light_flux.h"
 
 namespace tyndall::tracing {
 namespace {
@@ -177,12 +178,15 @@ LightSample LightSource::meet(const Ray& ray) const {
     return result;
 }
 
-double LightSource::power(double discArea) const {
+/// Chances follow from it, and no light: emit() and sample() have formulas of their own. A spot counts with all that its rays could carry
+/// where they are drawn, its cone or a ball's whole sphere, so that no ray stands for more than the sum of these.
+double LightSource::power(double area) const {
     if (black_) return 0;
-    if (type_ == LightType::Directional) return meanOf(power_) * discArea;
-    if (type_ == LightType::Rect) return meanOf(power_) * kPi * area_;
-    const double cone = type_ == LightType::Spot && radius_ == 0 ? 0.5 * (1 - cosineOuter_) : 1;
-    return meanOf(power_) * 4 * kPi * cone;
+    const double mean = meanOf(power_);
+    if (type_ == LightType::Directional) return parallelFlux(mean, area);
+    if (type_ == LightType::Rect) return lambertFlux(mean, area_);
+    if (type_ == LightType::Spot && radius_ == 0) return coneFlux(mean, cosineOuter_);
+    return pointFlux(mean);
 }
 
 EmittedRay LightSource::emit(const dvec2& where, const dvec2& way) const {

@@ -45,8 +45,8 @@ public:
     [[nodiscard]] double importance(const dvec3& from) const;
     /// Roughly ∫ importance dt along [0,length] of the ray.
     [[nodiscard]] double importanceAlong(const Ray& ray, double length) const;
-    /// Watts, the mean of the channels; of a spot, as much as its whole outer cone could have. `discArea`: m², of what light from infinity falls on.
-    [[nodiscard]] double power(double discArea) const;
+    /// Watts, the mean of the channels; of a spot, those of its whole outer cone at full intensity. `area`: m², what light from infinity falls on.
+    [[nodiscard]] double power(double area) const;
     /// A ray of a light at a place in space. CHECKs local().
     [[nodiscard]] EmittedRay emit(const dvec2& where, const dvec2& way) const;
 
