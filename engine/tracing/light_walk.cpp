@@ -52,99 +52,122 @@ double LightWalker::Aim::density(const dvec3& direction, double own) const {
     return (1 - kOnToContent) * own + (within ? kOnToContent / (2 * kPi * versine) : 0.0);
 }
 
-bool LightWalker::survives(double carried, double started, size_t vertices, Sampler& sampler,
-                           PathWeights& weights) const {
+bool LightWalker::survives(size_t vertices, Sampler& sampler, Flight& flight) const {
+    const double carried = maximumOf(flight.weights.carried());
     if (!(carried > 0)) return false;
     if (vertices < 2) return true;
     const double chance =
-        std::clamp(carried / started, settings_.leastSurvival, settings_.mostSurvival);
+        std::clamp(carried / flight.started, settings_.leastSurvival, settings_.mostSurvival);
     if (!(sampler.random() < chance)) return false;
-    weights.throughput /= chance;
+    flight.weights.throughput /= chance;
+    return true;
+}
+
+bool LightWalker::begin(Sampler& sampler, Flight& flight) {
+    start_ = emission_.sample(sampler);
+    flight.started = maximumOf(start_.power);
+    if (!(flight.started > 0) || !std::isfinite(flight.started)) return false;
+    flight.weights.throughput = start_.power;
+    if (!scene_.media->grey()) flight.weights.hero = std::min(2, int(3 * sampler.next1()));
+    flight.ray = start_.ray;
+    return true;
+}
+
+bool LightWalker::addVertex(Sampler& sampler, Flight& flight, std::vector<WalkVertex>& walk) {
+    ++rays_;
+    PathWeights& weights = flight.weights;
+    const RayHit hit =
+        scene_.surfaces->intersect(flight.ray, 0, kInfinity, RayKind::Path, sampler.bits());
+    MediaSegment::Flight segment{false, hit.distance};
+    if (!scene_.media->empty()) {
+        segment_.start(flight.ray, hit.distance);
+        segment = segment_.fly(sampler, weights, mediumPoint_, emitted_);
+    }
+    if (!segment.collided && !hit.found()) return false;
+    if (walk.empty()) weights.throughput *= rangeWindow(start_.range, segment.distance);
+    if (weights.throughput == dvec3(0)) return false;
+    const double choice = sampler.next1();
+    const dvec2 u = sampler.next2();
+    WalkVertex vertex;
+    vertex.travel = flight.ray.direction;
+    vertex.scatterings = int(walk.size()) + 1;
+    if (segment.collided) {
+        enterMedium(segment.distance, choice, flight, vertex);
+        walk.push_back(vertex);
+        scatterInMedium(vertex, u, sampler, flight);
+        return true;
+    }
+    vertex.point = scene_.surfaces->pointAt(flight.ray, hit);
+    if (vertex.point.unlit) return false;
+    vertex.position = vertex.point.position;
+    weights.throughput *= tilt(vertex.point.surface, vertex.travel);
+    vertex.power = weights.carried();
+    walk.push_back(vertex);
+    return scatterOnSurface(vertex, choice, u, sampler, flight);
+}
+
+void LightWalker::enterMedium(double distance, double choice, Flight& flight,
+                              WalkVertex& vertex) const {
+    PathWeights& weights = flight.weights;
+    dvec3 share;
+    vertex.medium = &mediumPoint_.pick(weights.hero, choice, share);
+    vertex.position = flight.ray.at(distance);
+    weights.throughput *= share;
+    weights.ratio *= share; // every hero would have drawn it by its own scattering
+    vertex.power = weights.carried();
+}
+
+void LightWalker::scatterInMedium(const WalkVertex& vertex, const dvec2& u, Sampler& sampler,
+                                  Flight& flight) const {
+    const Aim aim = aimFrom(vertex.position);
+    dvec3 direction;
+    if (aim.versine > 0 && sampler.random() < kOnToContent) {
+        direction = aim.sample(u);
+    } else {
+        const double cosine = std::clamp(vertex.medium->samplePhase(u.x), -1.0, 1.0);
+        direction = glm::normalize(Frame(vertex.travel).toWorld(directionAround(cosine, u.y)));
+    }
+    if (aim.versine > 0) {
+        const dvec3 apart = direction - vertex.travel;
+        const double phase = vertex.medium->phaseValue(0.5 * glm::dot(apart, apart)),
+                     weight = phase / aim.density(direction, phase);
+        flight.weights.throughput *= weight;
+        flight.started *= weight;
+    }
+    flight.ray = {vertex.position, direction};
+}
+
+bool LightWalker::scatterOnSurface(const WalkVertex& vertex, double choice, const dvec2& u,
+                                   Sampler& sampler, Flight& flight) const {
+    const Bsdf bsdf(vertex.point.surface, -vertex.travel);
+    const Aim aim = aimFrom(vertex.position);
+    BsdfSample sample;
+    if (aim.versine > 0 && sampler.random() < kOnToContent) {
+        sample.direction = aim.sample(u);
+        sample.weight = bsdf.evaluate(sample.direction);
+        sample.density = bsdf.density(sample.direction);
+        sample.weight /= sample.density > 0 ? sample.density : 1.0;
+    } else {
+        sample = bsdf.sample(choice, u);
+    }
+    if (sample.weight == dvec3(0)) return false;
+    if (aim.versine > 0) {
+        const double weight = sample.density / aim.density(sample.direction, sample.density);
+        sample.weight *= weight;
+        flight.started *= weight;
+    }
+    flight.weights.throughput *=
+        sample.weight / std::max(tilt(vertex.point.surface, sample.direction), kLeastCosine);
+    flight.ray = rayFrom(vertex.point, sample.direction);
     return true;
 }
 
 void LightWalker::trace(Sampler& sampler, std::vector<WalkVertex>& walk) {
     walk.clear();
-    start_ = emission_.sample(sampler);
-    double started = maximumOf(start_.power);
-    if (!(started > 0) || !std::isfinite(started)) return;
-    PathWeights weights;
-    weights.throughput = start_.power;
-    if (!scene_.media->grey()) weights.hero = std::min(2, int(3 * sampler.next1()));
-    Ray ray = start_.ray;
-    for (;;) {
-        ++rays_;
-        const RayHit hit =
-            scene_.surfaces->intersect(ray, 0, kInfinity, RayKind::Path, sampler.bits());
-        MediaSegment::Flight flight{false, hit.distance};
-        if (!scene_.media->empty()) {
-            segment_.start(ray, hit.distance);
-            flight = segment_.fly(sampler, weights, mediumPoint_, emitted_);
-        }
-        if (!flight.collided && !hit.found()) return;
-        WalkVertex vertex;
-        vertex.travel = ray.direction;
-        vertex.scatterings = int(walk.size()) + 1;
-        if (walk.empty()) weights.throughput *= rangeWindow(start_.range, flight.distance);
-        if (weights.throughput == dvec3(0)) return;
-        const double choice = sampler.next1();
-        const dvec2 u = sampler.next2();
-        if (flight.collided) {
-            dvec3 share;
-            vertex.medium = &mediumPoint_.pick(weights.hero, choice, share);
-            vertex.position = ray.at(flight.distance);
-            weights.throughput *= share;
-            weights.ratio *= share; // every hero would have drawn it by its own scattering
-            vertex.power = weights.carried();
-            walk.push_back(vertex);
-            const Aim aim = aimFrom(vertex.position);
-            dvec3 direction;
-            if (aim.versine > 0 && sampler.random() < kOnToContent) {
-                direction = aim.sample(u);
-            } else {
-                const double cosine = std::clamp(vertex.medium->samplePhase(u.x), -1.0, 1.0);
-                direction =
-                    glm::normalize(Frame(ray.direction).toWorld(directionAround(cosine, u.y)));
-            }
-            if (aim.versine > 0) {
-                const dvec3 apart = direction - ray.direction;
-                const double phase = vertex.medium->phaseValue(0.5 * glm::dot(apart, apart)),
-                             weight = phase / aim.density(direction, phase);
-                weights.throughput *= weight;
-                started *= weight;
-            }
-            ray = {vertex.position, direction};
-        } else {
-            vertex.point = scene_.surfaces->pointAt(ray, hit);
-            if (vertex.point.unlit) return;
-            vertex.position = vertex.point.position;
-            weights.throughput *= tilt(vertex.point.surface, ray.direction);
-            vertex.power = weights.carried();
-            walk.push_back(vertex);
-            const Bsdf bsdf(vertex.point.surface, -ray.direction);
-            const Aim aim = aimFrom(vertex.position);
-            BsdfSample sample;
-            if (aim.versine > 0 && sampler.random() < kOnToContent) {
-                sample.direction = aim.sample(u);
-                sample.weight = bsdf.evaluate(sample.direction);
-                sample.density = bsdf.density(sample.direction);
-                sample.weight /= sample.density > 0 ? sample.density : 1.0;
-            } else {
-                sample = bsdf.sample(choice, u);
-            }
-            if (sample.weight == dvec3(0)) return;
-            if (aim.versine > 0) {
-                const double weight =
-                    sample.density / aim.density(sample.direction, sample.density);
-                sample.weight *= weight;
-                started *= weight;
-            }
-            weights.throughput *=
-                sample.weight /
-                std::max(tilt(vertex.point.surface, sample.direction), kLeastCosine);
-            ray = rayFrom(vertex.point, sample.direction);
-        }
-        if (!survives(maximumOf(weights.carried()), started, walk.size(), sampler, weights)) return;
+    Flight flight;
+    if (!begin(sampler, flight)) return;
+    while (addVertex(sampler, flight, walk)) {
+        if (!survives(walk.size(), sampler, flight)) return;
         if (int(walk.size()) >= settings_.longest) {
             ++cutOff_;
             return;

@@ -55,8 +55,23 @@ private:
         [[nodiscard]] double density(const dvec3& direction, double own) const;
     };
     [[nodiscard]] Aim aimFrom(const dvec3& position) const;
-    bool survives(double carried, double started, size_t vertices, Sampler& sampler,
-                  PathWeights& weights) const;
+    /// A walk between two vertices.
+    struct Flight {
+        Ray ray;
+        PathWeights weights;
+        double started =
+            0; // what it began with, with the weights of directions towards the content
+    };
+    bool begin(Sampler& sampler, Flight& flight);
+    /// Follows the ray to the next vertex and draws the ray that leaves it; false: the walk ends, with or without the vertex.
+    bool addVertex(Sampler& sampler, Flight& flight, std::vector<WalkVertex>& walk);
+    void enterMedium(double distance, double choice, Flight& flight, WalkVertex& vertex) const;
+    void scatterInMedium(const WalkVertex& vertex, const dvec2& u, Sampler& sampler,
+                         Flight& flight) const;
+    bool scatterOnSurface(const WalkVertex& vertex, double choice, const dvec2& u, Sampler& sampler,
+                          Flight& flight) const;
+    /// Russian roulette, from the third vertex on.
+    bool survives(size_t vertices, Sampler& sampler, Flight& flight) const;
     const TracerScene& scene_;
     const LightEmission& emission_;
     WalkSettings settings_;
