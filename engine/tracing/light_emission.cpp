@@ -103,18 +103,18 @@ Ray LightEmission::fromInfinity(const dvec3& direction, double choice, const dve
     const size_t last = boxes_.size() - 1;
     const double toContent = last > 0 && shadowOf(0) > 0 ? kToContent : 0.0,
                  toOther = last > 0 ? (1 - toContent) / double(last) : 1.0;
-    size_t aim = last;
+    size_t target = last;
     if (choice < toContent) {
-        aim = 0;
+        target = 0;
     } else if (last > 0) {
-        aim = 1 + std::min(size_t((choice - toContent) / toOther), last - 1);
+        target = 1 + std::min(size_t((choice - toContent) / toOther), last - 1);
     }
-    dvec3 position = pointOnShadow(boxes_[aim], direction, u);
+    dvec3 position = pointOnShadow(boxes_[target], direction, u);
     double density = 0;
     for (size_t box = 0; box <= last; ++box) {
         const double part = box == 0 && last > 0 ? toContent : toOther, shadow = shadowOf(box);
         // A point of a box's face is on that box's shadow, however it was rounded.
-        if (part > 0 && shadow > 0 && (box == aim || onShadow(boxes_[box], position, direction)))
+        if (part > 0 && shadow > 0 && (box == target || onShadow(boxes_[box], position, direction)))
             density += part / shadow;
     }
     area = density > 0 ? 1 / density : 0;
@@ -140,7 +140,7 @@ EmittedRay LightEmission::sample(Sampler& sampler) const {
         if (lamp.local()) {
             out = lamp.emit(where, way);
         } else {
-            const LightSample sun = lamp.sample(whole_.empty() ? dvec3(0) : whole_.centre(), way);
+            const LampSample sun = lamp.sample(whole_.empty() ? dvec3(0) : whole_.centre(), way);
             out.ray = fromInfinity(-sun.direction, choice.y, where, area);
             if (sun.density > 0) out.power = sun.radiance * (area / sun.density);
             out.distant = true;

@@ -8,7 +8,7 @@ namespace {
 
 /// Light that grazes a facet under a tilted shading normal would weigh without bound.
 constexpr double kLeastCosine = 1e-3;
-/// Of what is scattered outside of the ball around the content, so much is aimed at it.
+/// Of what is scattered outside of the ball around the content, so much is sampled towards it.
 constexpr double kOnToContent = 0.5;
 
 /// What a shading normal makes of light that falls in along `travel`: its cosine over that of the facet (Veach 1997, 5.3).
@@ -32,7 +32,7 @@ dvec3 WalkVertex::intensity(const dvec3& direction) const {
     return power * reflected * (facet / std::max(shading, kLeastCosine));
 }
 
-LightWalker::Aim LightWalker::aimFrom(const dvec3& position) const {
+LightWalker::ContentCone LightWalker::contentConeFrom(const dvec3& position) const {
     const dvec3 way = centre_ - position;
     const double distance = glm::length(way);
     if (!(radius_ > 0) || !(distance > radius_) || !std::isfinite(distance)) return {};
@@ -40,47 +40,47 @@ LightWalker::Aim LightWalker::aimFrom(const dvec3& position) const {
     return {way / distance, sine * sine / (1 + std::sqrt(1 - sine * sine))};
 }
 
-dvec3 LightWalker::Aim::sample(const dvec2& u) const {
+dvec3 LightWalker::ContentCone::sample(const dvec2& u) const {
     const double v = u.x * versine, sine = std::sqrt(v * (2 - v)), azimuth = 2 * kPi * u.y;
     return glm::normalize(
         Frame(axis).toWorld({sine * std::cos(azimuth), sine * std::sin(azimuth), 1 - v}));
 }
 
-double LightWalker::Aim::density(const dvec3& direction, double own) const {
+double LightWalker::ContentCone::density(const dvec3& direction, double own) const {
     const dvec3 apart = direction - axis;
     const bool within = 0.5 * glm::dot(apart, apart) <= versine;
     return (1 - kOnToContent) * own + (within ? kOnToContent / (2 * kPi * versine) : 0.0);
 }
 
-bool LightWalker::survives(size_t vertices, Sampler& sampler, Flight& flight) const {
-    const double carried = maximumOf(flight.weights.carried());
+bool LightWalker::survives(size_t vertices, Sampler& sampler, Progress& progress) const {
+    const double carried = maximumOf(progress.weights.carried());
     if (!(carried > 0)) return false;
     if (vertices < 2) return true;
     const double chance =
-        std::clamp(carried / flight.started, settings_.leastSurvival, settings_.mostSurvival);
+        std::clamp(carried / progress.started, settings_.leastSurvival, settings_.mostSurvival);
     if (!(sampler.random() < chance)) return false;
-    flight.weights.throughput /= chance;
+    progress.weights.throughput /= chance;
     return true;
 }
 
-bool LightWalker::begin(Sampler& sampler, Flight& flight) {
+bool LightWalker::begin(Sampler& sampler, Progress& progress) {
     start_ = emission_.sample(sampler);
-    flight.started = maximumOf(start_.power);
-    if (!(flight.started > 0) || !std::isfinite(flight.started)) return false;
-    flight.weights.throughput = start_.power;
-    if (!scene_.media->grey()) flight.weights.hero = std::min(2, int(3 * sampler.next1()));
-    flight.ray = start_.ray;
+    progress.started = maximumOf(start_.power);
+    if (!(progress.started > 0) || !std::isfinite(progress.started)) return false;
+    progress.weights.throughput = start_.power;
+    if (!scene_.media->grey()) progress.weights.hero = std::min(2, int(3 * sampler.next1()));
+    progress.ray = start_.ray;
     return true;
 }
 
-bool LightWalker::addVertex(Sampler& sampler, Flight& flight, std::vector<WalkVertex>& walk) {
+bool LightWalker::addVertex(Sampler& sampler, Progress& progress, std::vector<WalkVertex>& walk) {
     ++rays_;
-    PathWeights& weights = flight.weights;
+    PathWeights& weights = progress.weights;
     const RayHit hit =
-        scene_.surfaces->intersect(flight.ray, 0, kInfinity, RayKind::Path, sampler.bits());
+        scene_.surfaces->intersect(progress.ray, 0, kInfinity, RayKind::Path, sampler.bits());
     MediaSegment::Flight segment{false, hit.distance};
     if (!scene_.media->empty()) {
-        segment_.start(flight.ray, hit.distance);
+        segment_.start(progress.ray, hit.distance);
         segment = segment_.fly(sampler, weights, mediumPoint_, emitted_);
     }
     if (!segment.collided && !hit.found()) return false;
@@ -89,61 +89,61 @@ bool LightWalker::addVertex(Sampler& sampler, Flight& flight, std::vector<WalkVe
     const double choice = sampler.next1();
     const dvec2 u = sampler.next2();
     WalkVertex vertex;
-    vertex.travel = flight.ray.direction;
+    vertex.travel = progress.ray.direction;
     vertex.scatterings = int(walk.size()) + 1;
     if (segment.collided) {
-        enterMedium(segment.distance, choice, flight, vertex);
+        enterMedium(segment.distance, choice, progress, vertex);
         walk.push_back(vertex);
-        scatterInMedium(vertex, u, sampler, flight);
+        scatterInMedium(vertex, u, sampler, progress);
         return true;
     }
-    vertex.point = scene_.surfaces->pointAt(flight.ray, hit);
+    vertex.point = scene_.surfaces->pointAt(progress.ray, hit);
     if (vertex.point.unlit) return false;
     vertex.position = vertex.point.position;
     weights.throughput *= tilt(vertex.point.surface, vertex.travel);
     vertex.power = weights.carried();
     walk.push_back(vertex);
-    return scatterOnSurface(vertex, choice, u, sampler, flight);
+    return scatterOnSurface(vertex, choice, u, sampler, progress);
 }
 
-void LightWalker::enterMedium(double distance, double choice, Flight& flight,
+void LightWalker::enterMedium(double distance, double choice, Progress& progress,
                               WalkVertex& vertex) const {
-    PathWeights& weights = flight.weights;
+    PathWeights& weights = progress.weights;
     dvec3 share;
     vertex.medium = &mediumPoint_.pick(weights.hero, choice, share);
-    vertex.position = flight.ray.at(distance);
+    vertex.position = progress.ray.at(distance);
     weights.throughput *= share;
     weights.ratio *= share; // every hero would have drawn it by its own scattering
     vertex.power = weights.carried();
 }
 
 void LightWalker::scatterInMedium(const WalkVertex& vertex, const dvec2& u, Sampler& sampler,
-                                  Flight& flight) const {
-    const Aim aim = aimFrom(vertex.position);
+                                  Progress& progress) const {
+    const ContentCone cone = contentConeFrom(vertex.position);
     dvec3 direction;
-    if (aim.versine > 0 && sampler.random() < kOnToContent) {
-        direction = aim.sample(u);
+    if (cone.versine > 0 && sampler.random() < kOnToContent) {
+        direction = cone.sample(u);
     } else {
         const double cosine = std::clamp(vertex.medium->samplePhase(u.x), -1.0, 1.0);
         direction = glm::normalize(Frame(vertex.travel).toWorld(directionAround(cosine, u.y)));
     }
-    if (aim.versine > 0) {
+    if (cone.versine > 0) {
         const dvec3 apart = direction - vertex.travel;
         const double phase = vertex.medium->phaseValue(0.5 * glm::dot(apart, apart)),
-                     weight = phase / aim.density(direction, phase);
-        flight.weights.throughput *= weight;
-        flight.started *= weight;
+                     weight = phase / cone.density(direction, phase);
+        progress.weights.throughput *= weight;
+        progress.started *= weight;
     }
-    flight.ray = {vertex.position, direction};
+    progress.ray = {vertex.position, direction};
 }
 
 bool LightWalker::scatterOnSurface(const WalkVertex& vertex, double choice, const dvec2& u,
-                                   Sampler& sampler, Flight& flight) const {
+                                   Sampler& sampler, Progress& progress) const {
     const Bsdf bsdf(vertex.point.surface, -vertex.travel);
-    const Aim aim = aimFrom(vertex.position);
+    const ContentCone cone = contentConeFrom(vertex.position);
     BsdfSample sample;
-    if (aim.versine > 0 && sampler.random() < kOnToContent) {
-        sample.direction = aim.sample(u);
+    if (cone.versine > 0 && sampler.random() < kOnToContent) {
+        sample.direction = cone.sample(u);
         sample.weight = bsdf.evaluate(sample.direction);
         sample.density = bsdf.density(sample.direction);
         sample.weight /= sample.density > 0 ? sample.density : 1.0;
@@ -151,23 +151,23 @@ bool LightWalker::scatterOnSurface(const WalkVertex& vertex, double choice, cons
         sample = bsdf.sample(choice, u);
     }
     if (sample.weight == dvec3(0)) return false;
-    if (aim.versine > 0) {
-        const double weight = sample.density / aim.density(sample.direction, sample.density);
+    if (cone.versine > 0) {
+        const double weight = sample.density / cone.density(sample.direction, sample.density);
         sample.weight *= weight;
-        flight.started *= weight;
+        progress.started *= weight;
     }
-    flight.weights.throughput *=
+    progress.weights.throughput *=
         sample.weight / std::max(tilt(vertex.point.surface, sample.direction), kLeastCosine);
-    flight.ray = rayFrom(vertex.point, sample.direction);
+    progress.ray = rayFrom(vertex.point, sample.direction);
     return true;
 }
 
 void LightWalker::trace(Sampler& sampler, std::vector<WalkVertex>& walk) {
     walk.clear();
-    Flight flight;
-    if (!begin(sampler, flight)) return;
-    while (addVertex(sampler, flight, walk)) {
-        if (!survives(walk.size(), sampler, flight)) return;
+    Progress progress;
+    if (!begin(sampler, progress)) return;
+    while (addVertex(sampler, progress, walk)) {
+        if (!survives(walk.size(), sampler, progress)) return;
         if (int(walk.size()) >= settings_.longest) {
             ++cutOff_;
             return;
