@@ -63,7 +63,7 @@ inline uint64_t lightsKey(std::span<const gpu::LightData> lights) {
     uint64_t key = cacheKey(lights.size());
     for (gpu::LightData light : lights) {
         light.samplePoint = vec4(0);
-        light.shadowIndex = light.opticalDepthIndex = 0;
+        light.shadowIndex = 0;
         key = mixKey(key, std::as_bytes(std::span(&light, 1)));
     }
     return key;

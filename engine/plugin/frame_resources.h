@@ -21,16 +21,13 @@ struct GBuffer {
     fg::TextureHandle emissive; // RGBA32F: nits
 };
 
-/// Lights, their clusters, shadow maps and light-space optical depth.
+/// Lights, their clusters and shadow maps.
 struct LightResources {
     fg::BufferHandle lights; // LightData[]
     fg::BufferHandle
         clusters; // offsets and counts, then light indices (shaders/lighting/clusters.glsl)
     fg::BufferHandle shadowViews;  // ShadowView[]
     fg::TextureHandle shadowAtlas; // Depth32F array
-    fg::TextureHandle
-        opticalDepth; // light-space optical depth of the grid media; absent without grids
-    fg::BufferHandle opticalDepthViews;
     uint32_t lightCount = 0;      // with environment samples
     uint32_t sceneLightCount = 0; // without them
     bool softShadows =
