@@ -77,9 +77,7 @@ Outcome App::openSession(Scene scene) {
         return opened;
     session_ = std::make_unique<Session>(*rendering_, messages_, options_);
     // A processor that draws is slow: moving about matters more than pixels. A screenshot of so many frames has them all.
-    const std::string& driver = window_.context().capabilities().renderer;
-    if (options_.frames == 0 && (driver.find("llvmpipe") != std::string::npos ||
-                                 driver.find("softpipe") != std::string::npos))
+    if (options_.frames == 0 && window_.context().capabilities().isSoftware())
         session_->reduction = 2;
 
     listen(window_.handle(), &eventArrived_);

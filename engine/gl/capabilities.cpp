@@ -55,20 +55,20 @@ Limits queryLimits(bool anisotropic) {
     return limits;
 }
 
-constexpr WorkaroundInfo kWorkarounds[] = {
-    {Workaround::NoAnisotropy, "no-anisotropy", "llvmpipe",
-     "Mesa 22.3's anisotropic filter loops over the footprint without a bound: Sponza's floor, seen at a grazing angle, took over 15 minutes of CPU time "
-     "at 160x90 and did not end"},
-    {Workaround::FlushTimestamps, "flush-timestamps", "llvmpipe",
-     "compute shaders run while they are recorded, but timestamps are taken when the draws recorded with them are "
-     "rasterised: without "
-     "a flush after each timestamp, compute work seems to take no time (Mesa 22.3; "
-     "GpuTimerTest.ComputeWorkHasItsTime)"},
+struct WorkaroundRow {
+    Workaround workaround;
+    std::string_view renderer; // the part of GL_RENDERER that it applies to
+};
+constexpr WorkaroundRow kWorkarounds[] = {
+    // Mesa 22.3's anisotropic filter loops over the footprint without a bound: Sponza's floor, seen at a grazing angle, took over
+    // 15 minutes of CPU time at 160x90 and did not end.
+    {Workaround::NoAnisotropy, "llvmpipe"},
+    // Compute shaders run while they are recorded, but timestamps are taken when the draws recorded with them are rasterised:
+    // without a flush after each timestamp, compute work seems to take no time (Mesa 22.3; GpuTimerTest.ComputeWorkHasItsTime).
+    {Workaround::FlushTimestamps, "llvmpipe"},
 };
 
 } // namespace
-
-std::span<const WorkaroundInfo> workarounds() { return kWorkarounds; }
 
 Capabilities Capabilities::query(const std::set<std::string, std::less<>>& disabled) {
     Capabilities capabilities;
@@ -86,8 +86,8 @@ Capabilities Capabilities::query(const std::set<std::string, std::less<>>& disab
 }
 
 bool Capabilities::needs(Workaround workaround) const {
-    for (const WorkaroundInfo& info : kWorkarounds)
-        if (info.workaround == workaround && renderer.find(info.renderer) != std::string::npos)
+    for (const WorkaroundRow& row : kWorkarounds)
+        if (row.workaround == workaround && renderer.find(row.renderer) != std::string::npos)
             return true;
     return false;
 }

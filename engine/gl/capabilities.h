@@ -3,7 +3,6 @@
 
 #include <cstdint>
 #include <set>
-#include <span>
 #include <string>
 #include <string_view>
 
@@ -42,13 +41,6 @@ enum class Workaround : uint32_t {
     FlushTimestamps = 0, // a timestamp must be flushed to be taken in its place among the commands
     NoAnisotropy = 1,    // the anisotropic filter must not be used
 };
-struct WorkaroundInfo {
-    Workaround workaround;
-    const char* name;
-    const char* renderer; // the part of GL_RENDERER that it applies to
-    const char* reason;
-};
-std::span<const WorkaroundInfo> workarounds();
 
 class Capabilities {
 public:

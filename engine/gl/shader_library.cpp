@@ -236,10 +236,6 @@ Result<const Program*> ShaderLibrary::raster(const std::string& vertex, const st
     return program({{vertex, fragment}, std::move(defines)});
 }
 
-void ShaderLibrary::prefetch(std::span<const ProgramRequest> requests) {
-    for (const ProgramRequest& request : requests) state_->find(request);
-}
-
 bool ShaderLibrary::isListed(const ProgramRequest& request) const {
     for (const std::string& file : request.files)
         if (state_->sources.wasAdded(file)) return true;

@@ -46,8 +46,6 @@ public:
     Result<const Program*> compute(const std::string& path, std::vector<ShaderDefine> defines = {});
     Result<const Program*> raster(const std::string& vertex, const std::string& fragment,
                                   std::vector<ShaderDefine> defines = {});
-    /// Starts to make programs, on the driver's threads where it has some, so that program() waits less.
-    void prefetch(std::span<const ProgramRequest> requests);
 
     /// True when variants.txt has it, or when one of its files was added at run time.
     [[nodiscard]] bool isListed(const ProgramRequest& request) const;

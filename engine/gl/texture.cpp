@@ -54,6 +54,18 @@ void allocate(GLuint id, const TextureSpec& spec) {
         glTextureStorage3D(id, spec.mips, spec.internalFormat, spec.width, spec.height, spec.depth);
 }
 
+void checkInside(const char* what, const TextureRegion& region, const TextureRegion& whole) {
+    const auto inside = [](int first, int count, int size) {
+        return first >= 0 && count >= 0 && first <= size && count <= size - first;
+    };
+    CHECK(inside(region.x, region.width, whole.width) &&
+              inside(region.y, region.height, whole.height) &&
+              inside(region.z, region.depth, whole.depth),
+          fmt::format("{} of {}x{}x{} texels at {},{},{} to a mip of {}x{}x{}", what, region.width,
+                      region.height, region.depth, region.x, region.y, region.z, whole.width,
+                      whole.height, whole.depth));
+}
+
 /// A texture without mips would else be incomplete, and read as black, where a pass binds no sampler.
 void setPlainSampling(GLuint id, const TextureSpec& spec) {
     glTextureParameteri(id, GL_TEXTURE_MIN_FILTER,
@@ -157,16 +169,7 @@ TextureRegion Texture::mipRegion(int mip) const {
 
 void Texture::write(const TextureRegion& region, const void* data, size_t bytes, GLenum format,
                     GLenum type) {
-    const TextureRegion whole = mipRegion(region.mip);
-    const auto inside = [](int first, int count, int size) {
-        return first >= 0 && count >= 0 && first <= size && count <= size - first;
-    };
-    CHECK(inside(region.x, region.width, whole.width) &&
-              inside(region.y, region.height, whole.height) &&
-              inside(region.z, region.depth, whole.depth),
-          fmt::format("write of {}x{}x{} texels at {},{},{} to a mip of {}x{}x{}", region.width,
-                      region.height, region.depth, region.x, region.y, region.z, whole.width,
-                      whole.height, whole.depth));
+    checkInside("write", region, mipRegion(region.mip));
     const FormatInfo& info = formatInfo(spec_.internalFormat);
     if (format == 0) {
         const size_t expected = size_t(region.width) * size_t(region.height) *
@@ -202,6 +205,18 @@ void Texture::clearInteger(uint32_t x, uint32_t y, uint32_t z, uint32_t w) {
     const uint32_t value[4] = {x, y, z, w};
     for (int mip = 0; mip < spec_.mips; ++mip)
         glClearTexImage(id(), mip, GL_RGBA_INTEGER, isSigned ? GL_INT : GL_UNSIGNED_INT, value);
+}
+
+void Texture::copyFrom(const Texture& source, const TextureRegion& region, int x, int y, int z) {
+    CHECK(source.spec_.target == spec_.target &&
+              source.spec_.internalFormat == spec_.internalFormat,
+          "texels are copied between textures of one kind and format");
+    TextureRegion to = region;
+    to.x = x, to.y = y, to.z = z;
+    checkInside("copy", region, source.mipRegion(region.mip));
+    checkInside("copy", to, mipRegion(to.mip));
+    glCopyImageSubData(source.id(), spec_.target, region.mip, region.x, region.y, region.z, id(),
+                       spec_.target, to.mip, x, y, z, region.width, region.height, region.depth);
 }
 
 void Texture::generateMips() {

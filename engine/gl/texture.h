@@ -71,6 +71,8 @@ public:
     void clear(float x, float y = 0, float z = 0, float w = 0);
     /// Every texel of every mip, for integer formats.
     void clearInteger(uint32_t x, uint32_t y = 0, uint32_t z = 0, uint32_t w = 0);
+    /// Copies texels of `source`, GPU to GPU, to (x, y, z) of the same mip here. CHECKs: the same target and format, and both boxes inside.
+    void copyFrom(const Texture& source, const TextureRegion& region, int x, int y, int z);
     void generateMips();
     /// Which component each of R, G, B, A reads (GL_RED … GL_ZERO, GL_ONE).
     void swizzle(GLenum r, GLenum g, GLenum b, GLenum a);

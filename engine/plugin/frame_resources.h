@@ -21,16 +21,13 @@ struct GBuffer {
     fg::TextureHandle emissive; // RGBA32F: nits
 };
 
-/// Lights, their clusters, shadow maps and light-space optical depth.
+/// Lights, their clusters and shadow maps.
 struct LightResources {
     fg::BufferHandle lights; // LightData[]
     fg::BufferHandle
         clusters; // offsets and counts, then light indices (shaders/lighting/clusters.glsl)
     fg::BufferHandle shadowViews;  // ShadowView[]
     fg::TextureHandle shadowAtlas; // Depth32F array
-    fg::TextureHandle
-        opticalDepth; // light-space optical depth of the grid media; absent without grids
-    fg::BufferHandle opticalDepthViews;
     uint32_t lightCount = 0;      // with environment samples
     uint32_t sceneLightCount = 0; // without them
     bool softShadows =
@@ -69,6 +66,23 @@ struct ViewResources {
 
 template <typename Command> Command& bindView(Command& command, const ViewResources& view) {
     return command.params(view.data, "View");
+}
+
+/// Declares that a pass reads the surfaces, but for their emission: whoever includes shaders/common/receiver.glsl. The result is what
+/// bindGBuffer() takes.
+inline GBuffer readGBuffer(fg::Builder& builder, const GBuffer& gbuffer) {
+    return {builder.read(gbuffer.depth),
+            builder.read(gbuffer.normal),
+            builder.read(gbuffer.base),
+            builder.read(gbuffer.material),
+            {}};
+}
+
+template <typename Command> Command& bindGBuffer(Command& command, const GBuffer& gbuffer) {
+    return command.bind("gbufferDepth", gbuffer.depth)
+        .bind("gbufferNormal", gbuffer.normal)
+        .bind("gbufferBase", gbuffer.base)
+        .bind("gbufferMaterial", gbuffer.material);
 }
 
 /// Declares that a pass reads the media: whoever includes shaders/media/density.glsl, optical_depth.glsl or march.glsl. Only

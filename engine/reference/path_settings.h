@@ -13,8 +13,8 @@ struct PathSettings {
     TermSet terms = kAllTerms;
     int maxScatterings = -1;                                    // -1: any number
     TransmittanceMode transmittance = TransmittanceMode::Ratio; // the better one at equal time
-    bool aimAtLights = true; // next-event estimation; without it lights without extent stay dark
-    bool aimFromSegments = true; // also from points drawn for it along each piece of a path
+    bool nextEventEstimation = true;   // without it lights without extent stay dark
+    bool nextEventFromSegments = true; // also from points drawn for it along each piece of a path
     /// No path is longer, whatever it carries; reaching it is counted.
     static constexpr int kLongest = 100000;
 };

@@ -71,7 +71,7 @@ void SimplePathTracer::traceChannel(int c, const CameraRays::CameraRay& start, S
         see(weight * collision.emitted);
         if (history.count() > 0) // lamps are not seen directly
             for (const LightSource& lamp : scene_.lights->lamps()) {
-                const LightSample met = lamp.meet(ray);
+                const LampSample met = lamp.meet(ray);
                 if (met.density > 0 &&
                     (met.distance < collision.distance || (!collided && !hit.found())))
                     see(weight * met.radiance[c]);

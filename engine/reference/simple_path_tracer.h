@@ -1,7 +1,7 @@
 #pragma once
 // The path tracer to check the other one by: short, and right by inspection. It follows light particles backwards, one channel
-// at a time, as they would really go: they fly, are absorbed or scattered by chance, and bring home what they run into. It aims
-// at nothing, so lights without extent stay dark, and it is slow.
+// at a time, as they would really go: they fly, are absorbed or scattered by chance, and bring home what they run into. There is
+// no next-event estimation, so lights without extent stay dark, and it is slow.
 
 #include "reference/path_settings.h"
 

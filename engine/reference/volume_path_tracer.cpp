@@ -13,10 +13,11 @@ constexpr double kRouletteWeight = 0.25;
 constexpr double kLeastSurvival = 0.05;
 /// From so many scatterings on, all paths are ended by chance, whatever they carry.
 constexpr int kLongPath = 1000;
-/// Behind the first segment, the chance of aiming from a segment is so many times what it scatters of the path, but not less than that.
+/// Behind the first segment, the chance of next-event estimation from a segment is so many times what it scatters of the path, but not
+/// less than that.
 /// Measured on fog in a box: 4 needs a tenth less time for an error than 2 or 8.
-constexpr double kAimsPerScattering = 4;
-constexpr double kLeastAimChance = 0.1;
+constexpr double kSamplesPerScattering = 4;
+constexpr double kLeastSegmentChance = 0.1;
 
 } // namespace
 
@@ -58,10 +59,10 @@ void VolumePathTracer::trace(const CameraRays::CameraRay& start, Sampler& sample
             scene_.surfaces->intersect(ray, nearest, kInfinity, kind, sampler.bits());
         MediaSegment::Flight flight{false, hit.distance};
         const bool last = history_.count() == settings_.maxScatterings;
-        aimChance_ = 0;
+        segmentChance_ = 0;
         if (hasMedia) {
             segment_.start(ray, hit.distance);
-            if (!last) aimFromSegment(ray);
+            if (!last) sampleLightFromSegment(ray);
             if (!origin_.camera) meetLamps(ray, hit.distance);
             flight = segment_.fly(sampler, weights_, point_, emitted_);
             meetGlow();
@@ -104,13 +105,13 @@ bool VolumePathTracer::survives() {
     return true;
 }
 
-dvec3 VolumePathTracer::arriving(const AimedSample& aimed, const Ray& ray) {
+dvec3 VolumePathTracer::arriving(const LightSample& sample, const Ray& ray) {
     ++counts_.shadowRays;
-    if (aimed.shadowed && scene_.surfaces->occluded(ray, aimed.distance, sampler_->bits()))
+    if (sample.shadowed && scene_.surfaces->occluded(ray, sample.distance, sampler_->bits()))
         return dvec3(0);
-    if (scene_.media->empty()) return aimed.radiance;
-    return aimed.radiance *
-           transmittance(*scene_.media, ray, aimed.distance, settings_.transmittance, *sampler_);
+    if (scene_.media->empty()) return sample.radiance;
+    return sample.radiance *
+           transmittance(*scene_.media, ray, sample.distance, settings_.transmittance, *sampler_);
 }
 
 // --- Surfaces.
@@ -120,7 +121,7 @@ void VolumePathTracer::scatterAtSurface(const SurfacePoint& point, Ray& ray) {
     history_.add(Scattering::Surface);
     const Bsdf bsdf(point.surface, -before);
     fromPoint_.clear();
-    if (settings_.aimAtLights) aimFromSurface(point, bsdf);
+    if (settings_.nextEventEstimation) sampleLightFromSurface(point, bsdf);
     const double choice = sampler_->next1();
     const BsdfSample sample = bsdf.sample(choice, sampler_->next2());
     weights_.throughput *= sample.weight;
@@ -131,25 +132,25 @@ void VolumePathTracer::scatterAtSurface(const SurfacePoint& point, Ray& ray) {
     ray = rayFrom(point, sample.direction);
 }
 
-void VolumePathTracer::aimFromSurface(const SurfacePoint& point, const Bsdf& bsdf) {
+void VolumePathTracer::sampleLightFromSurface(const SurfacePoint& point, const Bsdf& bsdf) {
     scene_.lights->choose(point.position, false, fromPoint_);
     if (fromPoint_.empty()) return;
     double u = sampler_->next1();
     const size_t light = Lights::pick(fromPoint_, u);
-    const AimedSample aimed = scene_.lights->aim(light, point.position, u, sampler_->next2());
-    if (!aimed.valid()) return;
-    // The shadow ray starts off the surface. It still ends where it was aimed, or a glowing triangle would shadow itself.
-    Ray shadow = rayFrom(point, aimed.direction);
-    AimedSample way = aimed;
-    if (std::isfinite(aimed.distance)) {
-        const dvec3 rest = point.position + aimed.distance * aimed.direction - shadow.origin;
+    const LightSample sample = scene_.lights->sample(light, point.position, u, sampler_->next2());
+    if (!sample.valid()) return;
+    // The shadow ray starts off the surface. It still ends at the sampled point, or a glowing triangle would shadow itself.
+    Ray shadow = rayFrom(point, sample.direction);
+    LightSample way = sample;
+    if (std::isfinite(sample.distance)) {
+        const dvec3 rest = point.position + sample.distance * sample.direction - shadow.origin;
         way.distance = glm::length(rest);
         if (way.distance > 0) shadow.direction = rest / way.distance;
     }
-    const dvec3 reflected = bsdf.evaluate(aimed.direction);
+    const dvec3 reflected = bsdf.evaluate(sample.direction);
     if (!(maximumOf(reflected) > 0)) return;
-    const double density = aimed.density * fromPoint_.chance(light);
-    const double met = aimed.delta ? 0 : bsdf.density(aimed.direction) * aimed.pointsPerMetre;
+    const double density = sample.density * fromPoint_.chance(light);
+    const double met = sample.delta ? 0 : bsdf.density(sample.direction) * sample.pointsPerMetre;
     const dvec3 light3 = arriving(way, shadow);
     see(history_.term(), weights_.carried() * reflected * light3 / (density + met));
 }
@@ -166,47 +167,47 @@ void VolumePathTracer::scatterInMedium(double distance, Ray& ray) {
     next.segment = ray;
     next.distance = distance;
     next.flightDensity = segment_.flightDensity(distance);
-    next.aimedFromSegment = aimChance_;
-    if (aimChance_ > 0) {
+    next.chanceFromSegment = segmentChance_;
+    if (segmentChance_ > 0) {
         next.reach = reach_;
         next.collisionDensity = segment_.collisionDensity(distance);
         std::swap(fromSegment_, alongSegment_);
     }
     origin_ = next;
     fromPoint_.clear();
-    if (settings_.aimAtLights) aimFromCollision(position, before);
+    if (settings_.nextEventEstimation) sampleLightFromCollision(position, before);
     const double choice = sampler_->next1();
     const dvec3 after = point_.samplePhase(weights_.hero, before, choice, sampler_->next2());
     const dvec3 density = point_.phase(before, after);
-    // For weighing ways against each other any density will do that all of them can name: the mean over the channels.
+    // MIS needs any density that all techniques can evaluate: the mean over the channels.
     origin_.directionDensity = meanOf(density);
     weights_.scale(density, density);
     ray = {position, after};
 }
 
-void VolumePathTracer::aimFromCollision(const dvec3& position, const dvec3& before) {
+void VolumePathTracer::sampleLightFromCollision(const dvec3& position, const dvec3& before) {
     scene_.lights->choose(position, false, fromPoint_);
     if (fromPoint_.empty()) return;
     double u = sampler_->next1();
     const size_t light = Lights::pick(fromPoint_, u);
-    const AimedSample aimed = scene_.lights->aim(light, position, u, sampler_->next2());
-    if (!aimed.valid()) return;
-    const dvec3 phase = point_.phase(before, aimed.direction);
-    const double density = aimed.density * fromPoint_.chance(light);
+    const LightSample sample = scene_.lights->sample(light, position, u, sampler_->next2());
+    if (!sample.valid()) return;
+    const dvec3 phase = point_.phase(before, sample.direction);
+    const double density = sample.density * fromPoint_.chance(light);
     double met = 0;
-    if (!aimed.delta) met = meanOf(phase) * aimed.pointsPerMetre;
-    double drawn = 0; // by aimFromSegment, in units of flightDensity
-    if (origin_.aimedFromSegment > 0 && origin_.flightDensity > 0)
-        drawn = aimed.density * origin_.aimedFromSegment * fromSegment_.chance(light) *
+    if (!sample.delta) met = meanOf(phase) * sample.pointsPerMetre;
+    double drawn = 0; // by sampleLightFromSegment, in units of flightDensity
+    if (origin_.chanceFromSegment > 0 && origin_.flightDensity > 0)
+        drawn = sample.density * origin_.chanceFromSegment * fromSegment_.chance(light) *
                 distanceDensity(light, origin_.segment, origin_.reach, origin_.distance,
                                 origin_.collisionDensity) /
                 origin_.flightDensity;
     const double weight = density / (density + met + drawn);
-    const dvec3 light3 = arriving(aimed, {position, aimed.direction});
+    const dvec3 light3 = arriving(sample, {position, sample.direction});
     see(history_.term(), weights_.carried() * phase * light3 * (weight / density));
 }
 
-/// Per metre, of the place that aimFromSegment draws for this light.
+/// Per metre, of the place that sampleLightFromSegment draws for this light.
 double VolumePathTracer::distanceDensity(size_t light, const Ray& ray, Interval reach, double t,
                                          double collisionDensity) const {
     const auto& lamps = scene_.lights->lamps();
@@ -218,25 +219,26 @@ double VolumePathTracer::distanceDensity(size_t light, const Ray& ray, Interval 
     return equiangularDensity(t - reach.begin, nearest, height, reach.end - reach.begin);
 }
 
-/// Whether this path aims at a light from its present segment; sets reach_, alongSegment_ and aimChance_.
-bool VolumePathTracer::decideToAimFromSegment(const Ray& ray) {
-    if (!settings_.aimFromSegments || !settings_.aimAtLights || !scene_.media->scatters())
+/// Whether this path samples a light from its present segment; sets reach_, alongSegment_ and segmentChance_.
+bool VolumePathTracer::decideToSampleFromSegment(const Ray& ray) {
+    if (!settings_.nextEventFromSegments || !settings_.nextEventEstimation ||
+        !scene_.media->scatters())
         return false;
     reach_ = segment_.reach();
     if (reach_.empty() || !std::isfinite(reach_.end)) return false;
     scene_.lights->chooseAlong({ray.at(reach_.begin), ray.direction}, reach_.end - reach_.begin,
                                alongSegment_);
     if (alongSegment_.empty()) return false;
-    aimChance_ = history_.count() == 0
-                     ? 1
-                     : std::clamp(kAimsPerScattering * segment_.collisionChance() *
-                                      maximumOf(weights_.carried()),
-                                  kLeastAimChance, 1.0);
-    return aimChance_ == 1 || sampler_->random() < aimChance_;
+    segmentChance_ = history_.count() == 0
+                         ? 1
+                         : std::clamp(kSamplesPerScattering * segment_.collisionChance() *
+                                          maximumOf(weights_.carried()),
+                                      kLeastSegmentChance, 1.0);
+    return segmentChance_ == 1 || sampler_->random() < segmentChance_;
 }
 
-/// Where along the segment that light is aimed at from; distanceDensity() knows how likely.
-double VolumePathTracer::placeToAimFrom(size_t light, const Ray& ray, double u) {
+/// Where along the segment that light is sampled from; distanceDensity() has its density.
+double VolumePathTracer::placeToSampleFrom(size_t light, const Ray& ray, double u) {
     const auto& lamps = scene_.lights->lamps();
     if (light >= lamps.size() || !lamps[light].local()) return segment_.drawCollision(u).distance;
     const dvec3 start = ray.at(reach_.begin);
@@ -245,90 +247,92 @@ double VolumePathTracer::placeToAimFrom(size_t light, const Ray& ray, double u) 
     return reach_.begin + sampleEquiangular(u, nearest, height, reach_.end - reach_.begin).distance;
 }
 
-/// Aims at a light from a point of the segment at which aimedPoint_ is.
-VolumePathTracer::AimFromMedium VolumePathTracer::aimFrom(const dvec3& position, const Ray& ray,
-                                                          size_t light, double u, const dvec2& w) {
-    AimFromMedium result;
-    AimedSample& aimed = result.aimed;
+/// Samples a light from a point of the segment, where segmentPoint_ is.
+VolumePathTracer::SegmentSample VolumePathTracer::sampleLightFrom(const dvec3& position,
+                                                                  const Ray& ray, size_t light,
+                                                                  double u, const dvec2& w) {
+    SegmentSample result;
+    LightSample& sample = result.sample;
     const EnvironmentSource& environment = scene_.lights->environment();
     if (light == scene_.lights->environmentIndex() && environment.constant()) {
         // Light from all around: the phase function is the best to draw from.
-        aimed.direction = aimedPoint_.samplePhase(weights_.hero, ray.direction, u, w);
-        result.phase = aimedPoint_.phase(ray.direction, aimed.direction);
-        aimed.distance = kInfinity;
-        aimed.radiance = environment.radiance(aimed.direction);
-        aimed.density = result.met = meanOf(result.phase);
+        sample.direction = segmentPoint_.samplePhase(weights_.hero, ray.direction, u, w);
+        result.phase = segmentPoint_.phase(ray.direction, sample.direction);
+        sample.distance = kInfinity;
+        sample.radiance = environment.radiance(sample.direction);
+        sample.density = result.met = meanOf(result.phase);
         // The hero draws it; all heroes together, as likely as their channels' paths, draw it with this density.
         result.drawnAs =
             meanOf(weights_.ratio * result.phase) / (meanOf(weights_.ratio) * result.met);
         return result;
     }
-    aimed = scene_.lights->aim(light, position, u, w);
-    if (!aimed.valid()) return result;
-    result.phase = aimedPoint_.phase(ray.direction, aimed.direction);
-    result.met = aimed.delta ? 0 : meanOf(result.phase) * aimed.pointsPerMetre;
+    sample = scene_.lights->sample(light, position, u, w);
+    if (!sample.valid()) return result;
+    result.phase = segmentPoint_.phase(ray.direction, sample.direction);
+    result.met = sample.delta ? 0 : meanOf(result.phase) * sample.pointsPerMetre;
     scene_.lights->choose(position, false, fromCollision_);
-    result.collided = aimed.density * fromCollision_.chance(light);
+    result.collided = sample.density * fromCollision_.chance(light);
     return result;
 }
 
-void VolumePathTracer::aimFromSegment(const Ray& ray) {
-    if (!decideToAimFromSegment(ray)) return;
+void VolumePathTracer::sampleLightFromSegment(const Ray& ray) {
+    if (!decideToSampleFromSegment(ray)) return;
     double u = sampler_->next1();
     const double v = sampler_->next1();
     const dvec2 w = sampler_->next2();
     const size_t light = Lights::pick(alongSegment_, u);
-    const double t = placeToAimFrom(light, ray, v);
+    const double t = placeToSampleFrom(light, ray, v);
     const double distance = distanceDensity(light, ray, reach_, t, segment_.collisionDensity(t));
     if (!(distance > 0)) return;
     const dvec3 position = ray.at(t);
-    aimedPoint_.clear();
+    segmentPoint_.clear();
     for (const MediumSource& medium : scene_.media->media())
-        aimedPoint_.add(medium, medium.density(position));
-    if (aimedPoint_.scattering == dvec3(0)) return;
-    const AimFromMedium way = aimFrom(position, ray, light, u, w);
-    if (!way.aimed.valid()) return;
-    const double density = way.aimed.density * distance * aimChance_ * alongSegment_.chance(light);
+        segmentPoint_.add(medium, medium.density(position));
+    if (segmentPoint_.scattering == dvec3(0)) return;
+    const SegmentSample way = sampleLightFrom(position, ray, light, u, w);
+    if (!way.sample.valid()) return;
+    const double density =
+        way.sample.density * distance * segmentChance_ * alongSegment_.chance(light);
     const double others = segment_.flightDensity(t) * (way.met + way.collided);
     const dvec3 toHere = transmittance(*scene_.media, ray, t, settings_.transmittance, *sampler_);
-    const dvec3 light3 = arriving(way.aimed, {position, way.aimed.direction});
+    const dvec3 light3 = arriving(way.sample, {position, way.sample.direction});
     see(history_.termAfter(Scattering::Medium), weights_.carried() * toHere *
-                                                    aimedPoint_.scattering * way.phase * light3 /
+                                                    segmentPoint_.scattering * way.phase * light3 /
                                                     ((density + others) * way.drawnAs));
 }
 
 // --- Light met by chance.
 
-double VolumePathTracer::aimedDensity(size_t light, double density) const {
-    if (!settings_.aimAtLights || density <= 0) return 0;
+double VolumePathTracer::nextEventDensity(size_t light, double density) const {
+    if (!settings_.nextEventEstimation || density <= 0) return 0;
     double sum =
         fromPoint_.empty() ? 0 : fromPoint_.chance(light) * density * origin_.flightDensity;
-    if (origin_.inMedium && origin_.aimedFromSegment > 0)
-        sum += density * origin_.aimedFromSegment * fromSegment_.chance(light) *
+    if (origin_.inMedium && origin_.chanceFromSegment > 0)
+        sum += density * origin_.chanceFromSegment * fromSegment_.chance(light) *
                distanceDensity(light, origin_.segment, origin_.reach, origin_.distance,
                                origin_.collisionDensity);
     return sum;
 }
 
-/// The share of the light met that this way of finding it stands for.
-double VolumePathTracer::meetingWeight(size_t light, double density, double pointsPerMetre) const {
+/// Balance heuristic (Veach 1997, section 9.2) of light met by the direction drawn, against next-event estimation from its origin.
+double VolumePathTracer::misWeight(size_t light, double density, double pointsPerMetre) const {
     const double own = origin_.directionDensity * origin_.flightDensity * pointsPerMetre;
-    const double aimed = aimedDensity(light, density);
-    if (!(aimed > 0)) return 1;
-    return own > 0 ? own / (own + aimed) : 0;
+    const double others = nextEventDensity(light, density);
+    if (!(others > 0)) return 1;
+    return own > 0 ? own / (own + others) : 0;
 }
 
-// Lamps let rays pass. What comes from one is not left to whether the flight gets there: its expectation is as easily had.
+// Lamps let rays pass. What comes from one is not left to whether the flight gets there: its expectation is as easily computed.
 void VolumePathTracer::meetLamps(const Ray& ray, double end) {
     const auto& lamps = scene_.lights->lamps();
     for (size_t i = 0; i < lamps.size(); ++i) {
         if (lamps[i].delta()) continue;
-        const LightSample met = lamps[i].meet(ray);
+        const LampSample met = lamps[i].meet(ray);
         if (!(met.density > 0) || !(met.distance < end || std::isinf(end))) continue;
         const dvec3 through =
             transmittance(*scene_.media, ray, met.distance, settings_.transmittance, *sampler_);
         see(history_.term(),
-            weights_.carried() * through * met.radiance * meetingWeight(i, met.density));
+            weights_.carried() * through * met.radiance * misWeight(i, met.density));
     }
 }
 
@@ -338,10 +342,10 @@ void VolumePathTracer::meetEnvironment(const Ray& ray) {
     double weight = 1;
     if (!origin_.camera) {
         double density = environment.density(ray.direction);
-        // Aimed at along the phase function, see aimFromSegment.
+        // Next-event estimation draws it from the phase function, see sampleLightFrom().
         if (environment.constant() && origin_.inMedium) density = origin_.directionDensity;
         if (!environment.constant() || origin_.inMedium)
-            weight = meetingWeight(scene_.lights->environmentIndex(), density);
+            weight = misWeight(scene_.lights->environmentIndex(), density);
     }
     see(history_.term(), weights_.carried() * environment.radiance(ray.direction) * weight);
 }
@@ -353,9 +357,9 @@ void VolumePathTracer::meetGlow() {
         double weight = 1;
         if (!origin_.camera && !glow.black()) {
             const dvec3 way = emitted.position - origin_.position;
-            weight = meetingWeight(scene_.lights->glowIndex(),
-                                   glow.density(emitted.position) * glm::dot(way, way),
-                                   glow.pointsPerMetre());
+            weight = misWeight(scene_.lights->glowIndex(),
+                               glow.density(emitted.position) * glm::dot(way, way),
+                               glow.pointsPerMetre());
         }
         sum += weight * emitted.light;
     }
@@ -366,7 +370,7 @@ void VolumePathTracer::meetEmitter(const SurfacePoint& point) {
     if (point.emission == dvec3(0) || (point.unlit && !origin_.camera)) return;
     double weight = 1;
     if (!origin_.camera && point.emitter != MeshInstance::kNoEmitter)
-        weight = meetingWeight(
+        weight = misWeight(
             scene_.lights->trianglesIndex(),
             scene_.lights->emitterDensity(point.emitter, origin_.position, point.position));
     see(history_.term(), weights_.carried() * point.emission * weight);

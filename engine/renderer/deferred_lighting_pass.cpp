@@ -74,10 +74,7 @@ fg::TextureHandle addDirectPass(fg::FrameGraph& graph, const SurfaceLightInputs&
                     fg::texture2D(fg::Format::RGBA32F, inputs.view.width, inputs.view.height));
                 if (const char* reason = whyNoDirectLight(inputs)) return builder.skip(reason);
                 data.view = inputs.view;
-                data.gbuffer.depth = builder.read(inputs.gbuffer.depth);
-                data.gbuffer.normal = builder.read(inputs.gbuffer.normal);
-                data.gbuffer.base = builder.read(inputs.gbuffer.base);
-                data.gbuffer.material = builder.read(inputs.gbuffer.material);
+                data.gbuffer = readGBuffer(builder, inputs.gbuffer);
                 data.lights = readLights(builder, inputs.lights);
                 if (inputs.media.count > 0) data.media = readMedia(builder, inputs.media);
                 data.environmentMap =
@@ -97,11 +94,8 @@ fg::TextureHandle addDirectPass(fg::FrameGraph& graph, const SurfaceLightInputs&
                 bindLightLists(bindLights(command, data.lights), data.lights);
                 if (data.media.count > 0) bindMedia(command, data.media);
                 if (data.environmentMap) bindEnvironment(command, data.environment);
-                command.params(data.params, "Surfaces")
-                    .bind("gbufferDepth", data.gbuffer.depth)
-                    .bind("gbufferNormal", data.gbuffer.normal)
-                    .bind("gbufferBase", data.gbuffer.base)
-                    .bind("gbufferMaterial", data.gbuffer.material)
+                bindGBuffer(command, data.gbuffer)
+                    .params(data.params, "Surfaces")
                     .bind("surfaceDirect", data.direct)
                     .dispatchOver(data.direct);
             })

@@ -37,34 +37,31 @@ gpu::ClusterHeader makeHeader(const ViewResources& view, std::span<const vec4> b
     return header;
 }
 
-} // namespace
+struct Upload {
+    fg::BufferHandle clusters, balls;
+    gpu::ClusterHeader header;
+    const vec4* data;
+    uint32_t count;
+};
 
-fg::BufferHandle addLightClusterPass(fg::FrameGraph& graph, const ViewResources& view,
-                                     std::span<const vec4> balls, uint32_t globalCount,
-                                     const LightSettings& settings) {
-    struct Upload {
-        fg::BufferHandle clusters, balls;
-        gpu::ClusterHeader header;
-        const vec4* data;
-        uint32_t count;
-    };
-    struct Build {
-        fg::BufferHandle clusters, balls;
-        gpu::ClusterParams params;
-        ViewResources view;
-    };
+struct Build {
+    fg::BufferHandle clusters, balls;
+    gpu::ClusterParams params;
+    ViewResources view;
+};
+
+uint64_t clusterCount(const gpu::ClusterHeader& header) {
+    return uint64_t(header.grid.x) * header.grid.y * header.grid.z;
+}
+
+const Upload& addUpload(fg::FrameGraph& graph, const gpu::ClusterHeader& header,
+                        std::span<const vec4> balls, uint64_t key) {
     static_assert(sizeof(gpu::ClusterHeader) == 48, "header as in std430");
-
-    const gpu::ClusterHeader header = makeHeader(view, balls, globalCount, settings);
-    const uint64_t clusters = uint64_t(header.grid.x) * header.grid.y * header.grid.z;
+    const uint64_t clusters = clusterCount(header);
     const uint64_t bytes =
         sizeof(gpu::ClusterHeader) +
         std::max<uint64_t>(clusters * (header.grid.w + 1) * sizeof(uint32_t), 16);
-    // Lists follow from where the view and the lights are, and from nothing else.
-    uint64_t key = fg::hashName(bytesOf(&header, sizeof header));
-    key = fg::hashName(bytesOf(balls.data(), balls.size_bytes()), key);
-    key = fg::hashName(bytesOf(&view.data.renderFromClip, sizeof(mat4)), key);
-    const Upload& upload = graph.addPass<Upload>(
+    return graph.addPass<Upload>(
         "lights.clusters.upload",
         [&](fg::Builder& builder, Upload& data) {
             data = {{}, {}, header, balls.data(), clusters > 0 ? uint32_t(balls.size()) : 0u};
@@ -79,6 +76,19 @@ fg::BufferHandle addLightClusterPass(fg::FrameGraph& graph, const ViewResources&
             context.upload(data.clusters, 0, &data.header, sizeof data.header);
             if (data.count > 0) context.upload(data.balls, 0, data.data, data.count * sizeof(vec4));
         });
+}
+
+} // namespace
+
+fg::BufferHandle addLightClusterPass(fg::FrameGraph& graph, const ViewResources& view,
+                                     std::span<const vec4> balls, uint32_t globalCount,
+                                     const LightSettings& settings) {
+    const gpu::ClusterHeader header = makeHeader(view, balls, globalCount, settings);
+    // Lists follow from where the view and the lights are, and from nothing else.
+    uint64_t key = fg::hashName(bytesOf(&header, sizeof header));
+    key = fg::hashName(bytesOf(balls.data(), balls.size_bytes()), key);
+    key = fg::hashName(bytesOf(&view.data.renderFromClip, sizeof(mat4)), key);
+    const Upload& upload = addUpload(graph, header, balls, key);
     return graph
         .addPass<Build>(
             "lights.clusters",
@@ -88,7 +98,7 @@ fg::BufferHandle addLightClusterPass(fg::FrameGraph& graph, const ViewResources&
                 data.balls = builder.read(upload.balls);
                 data.clusters = builder.write(upload.clusters);
                 builder.cacheBy(key);
-                if (clusters == 0)
+                if (clusterCount(header) == 0)
                     builder.skip(
                         "few lights, or none with a limit to their reach: every light is looked at everywhere");
             },

@@ -105,7 +105,7 @@ void LightSystem::collectLight(const Light& light, const dmat4& worldFromNode, i
     dvec3 forward = -dvec3(worldFromNode[2]);
     gpu::LightData& data = c.data;
     data.type = shaderType(light.type);
-    data.opticalDepthIndex = data.shadowIndex = -1;
+    data.shadowIndex = -1;
     data.position = vec4(vec3(position), std::max(light.range, 0.0f));
     data.intensity = vec4(vec3(power), 0);
     c.strength = std::max({power.x, power.y, power.z});
@@ -213,7 +213,7 @@ void LightSystem::addEnvironment(const LightFrame& frame, std::vector<Collected>
         c.data.flags = gpu::kLightFromEnvironment;
         c.data.direction = vec4(vec3(-light.toLight), 0);
         c.data.intensity = vec4(vec3(light.illuminance), 0);
-        c.data.shadowIndex = c.data.opticalDepthIndex = -1;
+        c.data.shadowIndex = -1;
         c.strength = std::max({light.illuminance.x, light.illuminance.y, light.illuminance.z});
         all.push_back(c);
     }
@@ -240,7 +240,7 @@ void LightSystem::addMedia(const LightFrame& frame, std::vector<Collected>& all)
                 vec4(vec3(light.intensity),
                      float(converge ? std::max(nearest, media_.nearDistance) : nearest));
             c.data.flags = gpu::kLightFromMedium;
-            c.data.shadowIndex = c.data.opticalDepthIndex = -1;
+            c.data.shadowIndex = -1;
             all.push_back(c);
         }
     }

@@ -3,7 +3,6 @@
 // sample points; and the passes that upload them, draw shadow maps and make light lists.
 //
 //   lights.update(frame);              // each frame
-//   media.update(lights.lights());     // may set opticalDepthIndex
 //   LightResources resources = lights.addPasses(graph, gpuScene, view, true);
 
 #include <cstdint>
@@ -42,9 +41,7 @@ public:
     /// Makes this frame's lights. Scene lights and the environment are read again only where their versions changed.
     void update(const LightFrame& frame);
 
-    /// This frame's lights: first those that reach everywhere, then those that are in lists. `opticalDepthIndex` is -1 until
-    /// whoever attenuates light sets it, before addPasses().
-    [[nodiscard]] std::span<gpu::LightData> lights() { return lights_; }
+    /// This frame's lights: first those that reach everywhere, then those that are in lists.
     [[nodiscard]] std::span<const gpu::LightData> lights() const { return lights_; }
     /// Lights that reach everywhere, at the start of lights().
     [[nodiscard]] uint32_t globalCount() const { return globalCount_; }
@@ -67,7 +64,7 @@ private:
         gpu::LightData data{};
         int node = kNone;
         bool castsShadows = true;
-        double strength = 0; // candela or lux, the largest channel
+        double strength = 0; // candela or lux, the largest channel: at a facing surface, no flux
         float reach = 0;     // metres from its centre; 0: everywhere
     };
     void collect(const LightFrame& frame);

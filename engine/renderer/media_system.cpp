@@ -86,11 +86,14 @@ Result<void> MediaSystem::update(const Scene& scene, const dvec3& renderOrigin) 
         grids.push_back(placed.medium->density);
         if (placed.data.emission.w > 0) grids.push_back(placed.medium->temperature);
     }
+    const Version before = atlas_.version();
     if (Result<void> done = atlas_.update(grids); !done) {
         placed_.clear();
         scene_ = nullptr; // tried again with the next call
         return done;
     }
+    // A grid in the place of one of the same shape leaves every byte of the table as it was.
+    if (atlas_.version() != before) tableVersion_ = nextVersion();
     for (PlacedMedium& placed : placed_) {
         if (placed.data.kind != gpu::kMediumGrid) continue;
         placed.data.gridBricks.w = int(atlas_.firstBrick(*placed.medium->density));

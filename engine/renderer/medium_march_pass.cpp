@@ -1,15 +1,14 @@
 #include "renderer/medium_march_pass.h"
 
+#include "plugin/reduced_march.h"
+
 namespace tyndall {
 namespace {
 
 struct MarchData {
-    ViewResources view;
+    MarchPass march;
     LightResources lights;
-    MediaResources media;
-    fg::TextureHandle depth;
-    MediumMarch coarse, result; // `coarse` is read when upsampling
-    gpu::MarchParams params;
+    MediumMarch before, result; // before: of rays for squares, when upsampling
 };
 
 gpu::MarchParams makeParams(const MediumMarchInputs& inputs, const MediaSettings& settings,
@@ -20,52 +19,73 @@ gpu::MarchParams makeParams(const MediumMarchInputs& inputs, const MediaSettings
     return params;
 }
 
-void declare(fg::Builder& builder, MarchData& data, const MediaFrame& frame,
-             const MediumMarchInputs& inputs, const gpu::MarchParams& params) {
-    data.view = inputs.view;
-    if (params.flags & gpu::kMarchInScatter) data.lights = readLights(builder, inputs.lights);
-    data.media = readMedia(builder, frame.resources);
-    data.depth = builder.read(inputs.depth);
-    data.params = params;
+MediumMarch readImages(fg::Builder& builder, const MediumMarch& images) {
+    MediumMarch read{builder.read(images.transmittance), {}, {}};
+    if (images.inScatter) read.inScatter = builder.read(images.inScatter);
+    if (images.emission) read.emission = builder.read(images.emission);
+    return read;
 }
 
-MediumMarch createImages(fg::Builder& builder, const char* const (&names)[3], int width, int height,
-                         uint32_t flags) {
-    const fg::TextureDesc desc = fg::texture2D(fg::Format::RGBA32F, width, height);
+MediumMarch createImages(fg::Builder& builder, const MarchPass& march) {
+    const bool rays = march.stage == MarchStage::Squares && march.params.factor > 1;
+    const fg::TextureDesc desc = marchPicture(march);
+    const uint32_t flags = march.params.flags;
     MediumMarch images;
-    images.transmittance = builder.create(names[0], desc);
-    if (flags & gpu::kMarchInScatter) images.inScatter = builder.create(names[1], desc);
-    if (flags & gpu::kMarchEmission) images.emission = builder.create(names[2], desc);
+    images.transmittance =
+        builder.create(rays ? "media.coarse.transmittance" : "media.transmittance", desc);
+    if (flags & gpu::kMarchInScatter)
+        images.inScatter = builder.create(rays ? "media.coarse.inScatter" : "term.LVE", desc);
+    if (flags & gpu::kMarchEmission)
+        images.emission = builder.create(rays ? "media.coarse.emission" : "media.emission", desc);
     return images;
 }
 
 constexpr uint32_t kFewLights = 16; // up to so many, a list for each tile costs more than it saves
 
-void record(const MarchData& data, fg::PassContext& context, bool upsample) {
+void record(const MarchData& data, fg::PassContext& context) {
+    const MediaResources& media = data.march.media;
+    const bool upsample = data.march.stage == MarchStage::Spread;
     const bool inScatter = bool(data.result.inScatter), emission = bool(data.result.emission);
     const bool lists = inScatter && !upsample && data.lights.sceneLightCount > kFewLights;
     // Upsampling marches few pixels: it is not specialised on shadows.
     const bool soft = inScatter && (data.lights.softShadows || lists || upsample);
     auto command = context.compute(upsample ? "media/upsample.comp" : "media/march.comp",
-                                   {{"PHASE_GROUPS", int32_t(data.media.phaseGroups)},
+                                   {{"PHASE_GROUPS", int32_t(media.phaseGroups)},
                                     {"IN_SCATTER", lists ? 2 : int32_t(inScatter)},
                                     {"EMISSION", emission},
-                                    {"MEDIA_KINDS", mediaKinds(data.media, inScatter)},
+                                    {"MEDIA_KINDS", mediaKinds(media, inScatter)},
                                     {"SOFT_SHADOWS", soft}});
-    bindView(command, data.view);
     if (inScatter) bindLights(command, data.lights);
-    bindMedia(command, data.media);
-    command.params(data.params)
-        .bind("depth", data.depth)
-        .bind("transmittance", data.result.transmittance);
+    bindMedia(command, media);
+    bindMarch(command, data.march).bind("transmittance", data.result.transmittance);
     if (inScatter) command.bind("inScatter", data.result.inScatter);
     if (emission) command.bind("emission", data.result.emission);
-    if (data.coarse.transmittance) {
-        command.bind("coarseTransmittance", data.coarse.transmittance);
-        if (inScatter) command.bind("coarseInScatter", data.coarse.inScatter);
-        if (emission) command.bind("coarseEmission", data.coarse.emission);
+    if (data.before) {
+        command.bind("coarseTransmittance", data.before.transmittance);
+        if (inScatter) command.bind("coarseInScatter", data.before.inScatter);
+        if (emission) command.bind("coarseEmission", data.before.emission);
     }
     command.dispatchOver(data.result.transmittance);
+}
+
+/// `skip`: why there is nothing to march; null: there is.
+MediumMarch addStage(fg::FrameGraph& graph, const MediaFrame& frame,
+                     const MediumMarchInputs& inputs, const gpu::MarchParams& params,
+                     const char* skip, MarchStage stage, const MediumMarch& before) {
+    return graph
+        .addPass<MarchData>(
+            stage == MarchStage::Spread ? "media.upsample" : "media.march",
+            [&](fg::Builder& builder, MarchData& data) {
+                if (skip) return builder.skip(skip);
+                data.march =
+                    readMarch(builder, stage, inputs.view, frame.resources, inputs.depth, params);
+                if (params.flags & gpu::kMarchInScatter)
+                    data.lights = readLights(builder, inputs.lights);
+                if (before) data.before = readImages(builder, before);
+                data.result = createImages(builder, data.march);
+            },
+            [](const MarchData& data, fg::PassContext& context) { record(data, context); })
+        .result;
 }
 
 MediumMarch addTransmittancePass(fg::FrameGraph& graph, const MediaFrame& frame,
@@ -96,25 +116,6 @@ MediumMarch addTransmittancePass(fg::FrameGraph& graph, const MediaFrame& frame,
     return {pass.transmittance, {}, {}};
 }
 
-MediumMarch addUpsamplePass(fg::FrameGraph& graph, const MediaFrame& frame,
-                            const MediumMarchInputs& inputs, const MediumMarch& coarse,
-                            const gpu::MarchParams& params) {
-    return graph
-        .addPass<MarchData>(
-            "media.upsample",
-            [&](fg::Builder& builder, MarchData& data) {
-                declare(builder, data, frame, inputs, params);
-                data.coarse.transmittance = builder.read(coarse.transmittance);
-                if (coarse.inScatter) data.coarse.inScatter = builder.read(coarse.inScatter);
-                if (coarse.emission) data.coarse.emission = builder.read(coarse.emission);
-                data.result =
-                    createImages(builder, {"media.transmittance", "term.LVE", "media.emission"},
-                                 inputs.view.width, inputs.view.height, params.flags);
-            },
-            [](const MarchData& data, fg::PassContext& context) { record(data, context, true); })
-        .result;
-}
-
 } // namespace
 
 gpu::MarchParams marchParams(const MediaSettings& settings) {
@@ -139,33 +140,12 @@ MediumMarch addMediumMarchPass(fg::FrameGraph& graph, const MediaFrame& frame,
                    ? "media add no light: LVE is not wanted or there is no light in the scene"
                    : "no medium in view scatters or emits";
     const gpu::MarchParams params = makeParams(inputs, *frame.settings, inScatter, emission);
-    const int factor = int(params.factor);
-    const MediumMarch march =
-        graph
-            .addPass<MarchData>(
-                "media.march",
-                [&](fg::Builder& builder, MarchData& data) {
-                    if (skip) return builder.skip(skip);
-                    declare(builder, data, frame, inputs, params);
-                    const int width = (inputs.view.width + factor - 1) / factor,
-                              height = (inputs.view.height + factor - 1) / factor;
-                    data.result =
-                        factor == 1
-                            ? createImages(builder,
-                                           {"media.transmittance", "term.LVE", "media.emission"},
-                                           width, height, params.flags)
-                            : createImages(builder,
-                                           {"media.coarse.transmittance", "media.coarse.inScatter",
-                                            "media.coarse.emission"},
-                                           width, height, params.flags);
-                },
-                [](const MarchData& data, fg::PassContext& context) {
-                    record(data, context, false);
-                })
-            .result;
-    if (frame.marchSkipReason) return {};
-    if (skip) return addTransmittancePass(graph, frame, inputs);
-    return factor == 1 ? march : addUpsamplePass(graph, frame, inputs, march, params);
+    const MediumMarch march = addMarchStages<MediumMarch>(
+        int(params.factor), false, [&](MarchStage stage, const MediumMarch& before) {
+            return addStage(graph, frame, inputs, params, skip, stage, before);
+        });
+    if (!skip) return march;
+    return frame.marchSkipReason ? MediumMarch{} : addTransmittancePass(graph, frame, inputs);
 }
 
 } // namespace tyndall

@@ -22,6 +22,7 @@ struct MediumMarch {
     fg::TextureHandle transmittance; // of the way to the surface; null: 1 everywhere
     fg::TextureHandle inScatter;     // nits: LVE
     fg::TextureHandle emission;      // nits: the media's part of LE
+    explicit operator bool() const { return bool(transmittance); }
 };
 
 MediumMarch addMediumMarchPass(fg::FrameGraph& graph, const MediaFrame& frame,

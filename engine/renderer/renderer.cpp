@@ -13,14 +13,13 @@ namespace {
 
 constexpr int kLargestPicture = 16384; // pixels along an edge: what every GL 4.5 driver takes
 
-MediaSet kindOf(MediumKind kind) {
-    switch (kind) {
+MediaSet kindOf(const Medium& medium) {
+    switch (medium.kind) {
     case MediumKind::Everywhere:
     case MediumKind::Box:
     case MediumKind::Sphere: return kShapeMedia;
     case MediumKind::Height: return kHeightMedia;
-    case MediumKind::Grid: return kGridMedia;
-    case MediumKind::Particles: return kParticleMedia;
+    case MediumKind::Grid: return medium.particles ? kParticleMedia : kGridMedia;
     }
     return 0;
 }
@@ -36,7 +35,7 @@ SceneTraits traitsOf(const Scene& scene, const GpuScene& surfaces, const LightSy
     if (!mediaEnabled) return traits;
     traits.kinds = 0;
     for (const Medium& medium : scene.media) {
-        if (maximumOf(medium.scattering) > 0) traits.kinds |= kindOf(medium.kind);
+        if (maximumOf(medium.scattering) > 0) traits.kinds |= kindOf(medium);
         traits.media |= maximumOf(medium.extinction()) > 0 || maximumOf(medium.emission) > 0;
         traits.scatteringMedia |= maximumOf(medium.scattering) > 0;
         traits.lights |=
@@ -60,8 +59,7 @@ void Renderer::Impl::registerSettings() {
 }
 
 /// Uploads what changed and makes this frame's view, lights and lists.
-Result<void> Renderer::Impl::updateScene(const FrameRequest& request, const dmat4& worldFromCamera,
-                                         const Camera& camera) {
+Result<void> Renderer::Impl::updateScene(const FrameRequest& request, const CameraPose& pose) {
     const SceneVersions& now = scene->versions;
     if (std::tie(now.structure, now.transforms, now.meshes, now.media) !=
         std::tie(seenBounds.structure, seenBounds.transforms, seenBounds.meshes,
@@ -70,12 +68,12 @@ Result<void> Renderer::Impl::updateScene(const FrameRequest& request, const dmat
         contentBounds = scene->contentBounds();
         seenBounds = now;
     }
-    const dvec3 eye(worldFromCamera[3]);
+    const dvec3 eye(pose.worldFromCamera[3]);
     renderOrigin = chooseRenderOrigin(eye, sceneBounds, renderOrigin);
     Bounds around = sceneBounds;
     around.include(eye);
-    const double radius = std::max(0.5 * glm::length(around.extent()), 100 * camera.znear);
-    order.view = makeView({&camera, worldFromCamera, renderOrigin, radius, request.width,
+    const double radius = std::max(0.5 * glm::length(around.extent()), 100 * pose.camera.znear);
+    order.view = makeView({&pose.camera, pose.worldFromCamera, renderOrigin, radius, request.width,
                            request.height, request.frameIndex, request.seed, request.converge});
 
     surfaces.setAnisotropy(gbufferSettings.anisotropy);
@@ -139,6 +137,94 @@ Result<void> Renderer::setScene(const Scene& scene) {
     return {};
 }
 
+/// The request's own pose, or that of the camera node that it or the scene names.
+Result<CameraPose> Renderer::Impl::choosePose(const FrameRequest& request) const {
+    if (request.pose) return *request.pose;
+    const int node = request.cameraNode != kNone ? request.cameraNode : scene->activeCamera;
+    if (node == kNone || scene->nodes.at(size_t(node)).camera == kNone)
+        return Error{"the scene '" + scene->name + "' has no camera: add a node with a \"camera\""};
+    return CameraPose{scene->cameras.at(size_t(scene->nodes[size_t(node)].camera)),
+                      scene->worldTransforms().at(size_t(node))};
+}
+
+/// What techniques may compare to know that something of theirs is stale.
+plugin::SceneState Renderer::Impl::describeScene() const {
+    const SceneVersions& v = scene->versions;
+    plugin::SceneState state{surfaces.version(),
+                               v.materials,
+                               v.lights,
+                               media.version(),
+                               v.environment,
+                               uint32_t(lights.lights().size()),
+                               uint32_t(scene->media.size()),
+                               {},
+                               {},
+                               {},
+                               {}};
+    const auto toRender = [&](const dvec3& p, float(&out)[4]) {
+        for (int axis = 0; axis < 3; ++axis) out[axis] = float(p[axis] - renderOrigin[axis]);
+    };
+    toRender(sceneBounds.minimum, state.boundsMinimum);
+    toRender(sceneBounds.maximum, state.boundsMaximum);
+    toRender(contentBounds.minimum, state.contentMinimum);
+    toRender(contentBounds.maximum, state.contentMaximum);
+    return state;
+}
+
+/// `plan` must live until the frame has been recorded.
+void Renderer::Impl::fillOrder(const FrameRequest& request, const FramePlan& plan) {
+    order.plan = &plan;
+    order.scene = scene;
+    order.renderOrigin = renderOrigin;
+    order.ev100 = scene->ev100;
+    order.separateTerms = request.separateTerms;
+    order.statistics = request.statistics;
+    order.averagedFrame = request.converge ? average.next(averageKey(request), request.restart) : 0;
+    order.sceneState = describeScene();
+}
+
+/// Records the frame's passes, and the inspector's where it wants one.
+fg::FrameGraph& Renderer::Impl::record(const FrameRequest& request) {
+    const bool inspecting = !request.inspect.empty();
+    fg::ExecutorOptions options = executor.options();
+    if (options.keepAll != inspecting) {
+        options.keepAll = inspecting;
+        executor.setOptions(options);
+    }
+    fg::FrameGraph& graph = executor.beginFrame();
+    images = recordFrame(graph,
+                         {surfaces, lights, media, blended, environment, plugins, drawer,
+                          gbufferSettings, surfaceLightSettings, postSettings},
+                         order);
+    inspected = {};
+    if (!inspecting) return graph;
+    const fg::TextureHandle resource = executor.findTexture(request.inspect);
+    if (resource && !fg::isIntegerFormat(graph.desc(resource).format))
+        inspected = addInspectPass(graph, resource, request.width, request.height, inspectSettings);
+    return graph;
+}
+
+/// All that may be read back after the frame.
+void Renderer::Impl::markOutputs(fg::FrameGraph& graph, const FrameRequest& request) const {
+    for (fg::TextureHandle output :
+         {images.beauty, images.display, inspected, images.gbuffer.depth, images.gbuffer.normal,
+          images.gbuffer.base, images.transmittance})
+        if (output && !graph.isAbsent(output)) graph.markOutput(output);
+    if (request.separateTerms)
+        for (uint32_t i = 0; i < images.terms.count; ++i)
+            graph.markOutput(images.terms.images[i].image);
+    for (const StatisticsBuffer& statistics : images.statistics)
+        graph.markOutput(statistics.values);
+}
+
+void Renderer::Impl::measureAverage(FrameResult& result) {
+    if (average.shouldMeasure(convergeSettings)) average.measure(executor.readImage(images.beauty));
+    result.accumulatedFrames = average.frames();
+    result.estimatedError = average.estimatedError();
+    result.converged = result.estimatedError <= double(convergeSettings.relmse) ||
+                       result.accumulatedFrames >= uint32_t(convergeSettings.maximumFrames);
+}
+
 Result<FrameResult> Renderer::renderFrame(const FrameRequest& request) {
     Impl& r = *impl_;
     CHECK(r.scene != nullptr, "setScene() comes before renderFrame()");
@@ -147,92 +233,24 @@ Result<FrameResult> Renderer::renderFrame(const FrameRequest& request) {
         return Error{
             fmt::format("a picture of {}x{} pixels cannot be made: each side takes 1 to {}",
                         request.width, request.height, kLargestPicture)};
-    const int node = request.cameraNode != kNone ? request.cameraNode : r.scene->activeCamera;
-    if (!request.pose && (node == kNone || r.scene->nodes.at(size_t(node)).camera == kNone))
-        return Error{"the scene '" + r.scene->name +
-                     "' has no camera: add a node with a \"camera\""};
-    const dmat4 worldFromCamera =
-        request.pose ? request.pose->worldFromCamera : r.scene->worldTransforms().at(size_t(node));
-    const Camera& camera = request.pose
-                               ? request.pose->camera
-                               : r.scene->cameras.at(size_t(r.scene->nodes[size_t(node)].camera));
+    const Result<CameraPose> pose = r.choosePose(request);
+    if (!pose) return pose.error();
 
     r.shaders.pollChanges();
-    if (Result<void> updated = r.updateScene(request, worldFromCamera, camera); !updated)
-        return updated.error();
+    if (Result<void> updated = r.updateScene(request, *pose); !updated) return updated.error();
     const Result<FramePlan> plan =
         makePlan(r.techniqueSettings.technique.view(), request.terms, r.techniques,
                  traitsOf(*r.scene, r.surfaces, r.lights, r.media.settings().enabled));
     if (!plan) return plan.error();
-
-    r.order.plan = &*plan;
-    r.order.scene = r.scene;
-    r.order.renderOrigin = r.renderOrigin;
-    r.order.ev100 = r.scene->ev100;
-    r.order.separateTerms = request.separateTerms;
-    r.order.statistics = request.statistics;
-    r.order.averagedFrame =
-        request.converge ? r.average.next(r.averageKey(request), request.restart) : 0;
-    const SceneVersions& v = r.scene->versions;
-    r.order.sceneState = {r.surfaces.version(),
-                           v.materials,
-                           v.lights,
-                           r.media.version(),
-                           v.environment,
-                           uint32_t(r.lights.lights().size()),
-                           uint32_t(r.scene->media.size()),
-                           {},
-                           {},
-                           {},
-                           {}};
-    const auto toRender = [&](const dvec3& p, float(&out)[4]) {
-        for (int axis = 0; axis < 3; ++axis) out[axis] = float(p[axis] - r.renderOrigin[axis]);
-    };
-    toRender(r.sceneBounds.minimum, r.order.sceneState.boundsMinimum);
-    toRender(r.sceneBounds.maximum, r.order.sceneState.boundsMaximum);
-    toRender(r.contentBounds.minimum, r.order.sceneState.contentMinimum);
-    toRender(r.contentBounds.maximum, r.order.sceneState.contentMaximum);
-
-    const bool inspecting = !request.inspect.empty();
-    fg::ExecutorOptions options = r.executor.options();
-    if (options.keepAll != inspecting) {
-        options.keepAll = inspecting;
-        r.executor.setOptions(options);
-    }
-    fg::FrameGraph& graph = r.executor.beginFrame();
-    r.images = recordFrame(graph,
-                           {r.surfaces, r.lights, r.media, r.blended, r.environment, r.plugins,
-                            r.drawer, r.gbufferSettings, r.surfaceLightSettings, r.postSettings},
-                           r.order);
-    r.inspected = {};
-    if (inspecting) {
-        const fg::TextureHandle resource = r.executor.findTexture(request.inspect);
-        if (resource && !fg::isIntegerFormat(graph.desc(resource).format))
-            r.inspected =
-                addInspectPass(graph, resource, request.width, request.height, r.inspectSettings);
-    }
-    for (fg::TextureHandle output :
-         {r.images.beauty, r.images.display, r.inspected, r.images.gbuffer.depth,
-          r.images.gbuffer.normal, r.images.gbuffer.base, r.images.transmittance})
-        if (output && !graph.isAbsent(output)) graph.markOutput(output);
-    if (request.separateTerms)
-        for (uint32_t i = 0; i < r.images.terms.count; ++i)
-            graph.markOutput(r.images.terms.images[i].image);
-    for (const StatisticsBuffer& statistics : r.images.statistics)
-        graph.markOutput(statistics.values);
-    if (Result<void> done = r.executor.execute(); !done) return done.error();
+    r.fillOrder(request, *plan);
+    r.markOutputs(r.record(request), request);
+    const Result<void> done = r.executor.execute();
+    r.order.plan = nullptr;
+    if (!done) return done.error();
 
     FrameResult result;
     result.plan = *plan;
-    r.order.plan = nullptr;
-    if (request.converge) {
-        if (r.average.shouldMeasure(r.convergeSettings))
-            r.average.measure(r.executor.readImage(r.images.beauty));
-        result.accumulatedFrames = r.average.frames();
-        result.estimatedError = r.average.estimatedError();
-        result.converged = result.estimatedError <= double(r.convergeSettings.relmse) ||
-                           result.accumulatedFrames >= uint32_t(r.convergeSettings.maximumFrames);
-    }
+    if (request.converge) r.measureAverage(result);
     return result;
 }
 

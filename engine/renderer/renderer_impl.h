@@ -61,12 +61,17 @@ struct Renderer::Impl {
     FrameOrder order;
     FrameImages images;
     fg::TextureHandle inspected;
-    float ev100 = 0;
 
     void registerSettings();
-    Result<void> updateScene(const FrameRequest& request, const dmat4& worldFromCamera,
-                             const Camera& camera);
+    // The steps of a frame, in order.
+    Result<CameraPose> choosePose(const FrameRequest& request) const;
+    Result<void> updateScene(const FrameRequest& request, const CameraPose& pose);
     std::string averageKey(const FrameRequest& request) const;
+    plugin::SceneState describeScene() const;
+    void fillOrder(const FrameRequest& request, const FramePlan& plan);
+    fg::FrameGraph& record(const FrameRequest& request);
+    void markOutputs(fg::FrameGraph& graph, const FrameRequest& request) const;
+    void measureAverage(FrameResult& result);
 };
 
 } // namespace tyndall

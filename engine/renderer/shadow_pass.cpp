@@ -46,6 +46,34 @@ fg::RasterState emptyState() {
     return state;
 }
 
+fg::BufferHandle addViewUpload(fg::FrameGraph& graph, const ShadowPlan& plan) {
+    struct Upload {
+        fg::BufferHandle views;
+        const gpu::ShadowView* data;
+        size_t bytes;
+    };
+    const std::string_view bytes(reinterpret_cast<const char*>(plan.views.data()),
+                                 plan.views.size() * sizeof(gpu::ShadowView));
+    return graph
+        .addPass<Upload>(
+            "shadow.views",
+            [&](fg::Builder& builder, Upload& data) {
+                data.data = plan.views.data();
+                data.bytes = bytes.size();
+                data.views = builder.create(
+                    "shadow.views", fg::BufferDesc{std::max(data.bytes, sizeof(gpu::ShadowView))},
+                    fg::Access::TransferWrite);
+                builder.cacheBy(fg::hashName(bytes));
+            },
+            [](const Upload& data, fg::PassContext& context) {
+                if (data.bytes > 0)
+                    context.upload(data.views, 0, data.data, data.bytes);
+                else
+                    context.clearBuffer(data.views, 0);
+            })
+        .views;
+}
+
 } // namespace
 
 /// What the casters look like from anywhere: the scene's version also moves with what casts no shadow, as lights and cameras.
@@ -135,75 +163,56 @@ void ShadowPass::draw(const Data& data, fg::PassContext& context) {
 ShadowResources ShadowPass::addPasses(fg::FrameGraph& graph, const GpuScene& scene,
                                       const ShadowPlan& plan, const ViewResources& view,
                                       bool wanted) {
-    struct Upload {
-        fg::BufferHandle views;
-        const gpu::ShadowView* data;
-        size_t bytes;
-    };
     ShadowResources resources;
-    const uint64_t casters = plan.views.empty() ? 0 : castersKey(scene);
+    resources.views = addViewUpload(graph, plan);
+    if (!wanted)
+        resources.atlas = addNoMaps(graph, "only emission is rendered");
+    else if (plan.views.empty())
+        resources.atlas = addNoMaps(graph, scene.items().empty() ? "no surface in the scene"
+                                                                 : "no light casts a shadow");
+    else
+        resources.atlas = addMaps(graph, scene, plan, view);
+    return resources;
+}
+
+/// An atlas that is absent, and a pass that says why.
+fg::TextureHandle ShadowPass::addNoMaps(fg::FrameGraph& graph, const char* reason) {
+    return graph
+        .addPass<Data>(
+            "shadow.maps",
+            [&](fg::Builder& builder, Data& data) {
+                data.atlas = builder.create("shadow.atlas",
+                                            fg::texture2DArray(fg::Format::Depth32F, 1, 1, 1),
+                                            fg::Access::DepthTarget);
+                builder.skip(reason);
+            },
+            [](const Data&, fg::PassContext&) {})
+        .atlas;
+}
+
+fg::TextureHandle ShadowPass::addMaps(fg::FrameGraph& graph, const GpuScene& scene,
+                                      const ShadowPlan& plan, const ViewResources& view) {
+    const uint64_t casters = castersKey(scene);
     uint64_t key = fg::mixHash(casters, plan.views.size());
     for (const uint64_t k : plan.keys) key = fg::mixHash(key, k);
-
-    const std::string_view viewBytes(reinterpret_cast<const char*>(plan.views.data()),
-                                     plan.views.size() * sizeof(gpu::ShadowView));
-    resources.views = graph
-                          .addPass<Upload>(
-                              "shadow.views",
-                              [&](fg::Builder& builder, Upload& data) {
-                                  data.data = plan.views.data();
-                                  data.bytes = viewBytes.size();
-                                  data.views = builder.create(
-                                      "shadow.views",
-                                      fg::BufferDesc{std::max(data.bytes, sizeof(gpu::ShadowView))},
-                                      fg::Access::TransferWrite);
-                                  builder.cacheBy(fg::hashName(viewBytes));
-                              },
-                              [](const Upload& data, fg::PassContext& context) {
-                                  if (data.bytes > 0)
-                                      context.upload(data.views, 0, data.data, data.bytes);
-                                  else
-                                      context.clearBuffer(data.views, 0);
-                              })
-                          .views;
-
-    if (plan.views.empty() || !wanted) {
-        resources.atlas =
-            graph
-                .addPass<Data>(
-                    "shadow.maps",
-                    [&](fg::Builder& builder, Data& data) {
-                        data.atlas = builder.create(
-                            "shadow.atlas", fg::texture2DArray(fg::Format::Depth32F, 1, 1, 1),
-                            fg::Access::DepthTarget);
-                        builder.skip(!wanted                 ? "only emission is rendered"
-                                     : scene.items().empty() ? "no surface in the scene"
-                                                             : "no light casts a shadow");
-                    },
-                    [](const Data&, fg::PassContext&) {})
-                .atlas;
-        return resources;
-    }
     const fg::PersistentTexture atlas = graph.persistentTexture(
         "shadow.atlas",
         fg::texture2DArray(fg::Format::Depth32F, plan.atlasSize, plan.atlasSize, plan.layers));
-    resources.atlas =
-        graph
-            .addPass<Data>(
-                "shadow.maps",
-                [&](fg::Builder& builder, Data& data) {
-                    data.pass = this;
-                    data.scene = &scene;
-                    data.plan = &plan;
-                    data.view = view;
-                    data.castersKey = casters;
-                    data.wasReset = atlas.wasReset;
-                    data.atlas = builder.write(atlas.handle, fg::Access::DepthTarget);
-                    builder.cacheBy(key);
-                },
-                [](const Data& data, fg::PassContext& context) { data.pass->draw(data, context); })
-            .atlas;
-    return resources;
+    return graph
+        .addPass<Data>(
+            "shadow.maps",
+            [&](fg::Builder& builder, Data& data) {
+                data.pass = this;
+                data.scene = &scene;
+                data.plan = &plan;
+                data.view = view;
+                data.castersKey = casters;
+                data.wasReset = atlas.wasReset;
+                data.atlas = builder.write(atlas.handle, fg::Access::DepthTarget);
+                builder.cacheBy(key);
+            },
+            [](const Data& data, fg::PassContext& context) { data.pass->draw(data, context); })
+        .atlas;
 }
 
 } // namespace tyndall

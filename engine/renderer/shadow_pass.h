@@ -35,6 +35,9 @@ private:
         uint64_t key;
     };
     struct Data;
+    static fg::TextureHandle addNoMaps(fg::FrameGraph& graph, const char* reason);
+    fg::TextureHandle addMaps(fg::FrameGraph& graph, const GpuScene& scene, const ShadowPlan& plan,
+                              const ViewResources& view);
     void draw(const Data& data, fg::PassContext& context);
     void drawMap(const Data& data, size_t index, fg::PassContext& context) const;
 

@@ -1,6 +1,6 @@
 #pragma once
-// The glow of media as a light to aim at: points in the volume, drawn in proportion to what the cells around them send out. Rays that
-// happen to pass collect the same glow along their way; both are weighed against each other point by point (as in Simon, Hanika,
+// The glow of media as a light to sample: points in the volume, drawn in proportion to what the cells around them send out. Rays that
+// happen to pass collect the same glow along their way; both are combined by multiple importance sampling point by point (as in Simon, Hanika,
 // Zirr and Dachsbacher 2017, "Line Integration for Rendering Heterogeneous Emissive Volumes"), which takes the inverse square away.
 
 #include <vector>
@@ -13,12 +13,12 @@ namespace tyndall::tracing {
 struct GlowSample {
     dvec3 position{0};
     dvec3 emission{0};  // of all media there, nits per metre
-    double density = 0; // per m³; 0: there is nothing to aim at
+    double density = 0; // per m³; 0: nothing glows
 };
 
 class GlowSource {
 public:
-    /// Media that have no end are not aimed at. `media` must outlive it.
+    /// Media that have no end are not sampled. `media` must outlive it.
     explicit GlowSource(const std::vector<MediumSource>& media);
 
     [[nodiscard]] bool black() const { return !(power_ > 0); }

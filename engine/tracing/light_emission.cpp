@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "scene/light_flux.h"
+
 namespace tyndall::tracing {
 namespace {
 
@@ -31,22 +33,10 @@ std::vector<Bounds> boxesAround(const Bounds& content, const Bounds& whole) {
     return boxes;
 }
 
-/// Of the faces of a box that `direction` goes in by, those across x, y and z: their areas as the direction sees them, m².
-dvec3 shadowOfFaces(const Bounds& box, const dvec3& direction) {
-    if (box.empty()) return dvec3(0);
-    const dvec3 e = box.extent();
-    return glm::abs(direction) * dvec3(e.y * e.z, e.z * e.x, e.x * e.y);
-}
-
-double sumOf(const dvec3& v) { return v.x + v.y + v.z; }
-
-/// The mean over all directions of the shadow of a box: a quarter of its surface (Cauchy).
-double meanShadow(const Bounds& box) { return 0.5 * sumOf(shadowOfFaces(box, dvec3(1))); }
-
 /// Evenly on the shadow that a box casts along a direction: a point of a face that the direction goes in by.
 dvec3 pointOnShadow(const Bounds& box, const dvec3& direction, const dvec2& u) {
-    const dvec3 shadow = shadowOfFaces(box, direction);
-    double target = u.x * sumOf(shadow);
+    const dvec3 shadow = projectedFaces(box, direction);
+    double target = u.x * (shadow.x + shadow.y + shadow.z);
     int face = 0;
     while (face < 2 && !(target < shadow[face])) target -= shadow[face++];
     while (face > 0 && !(shadow[face] > 0)) --face; // never one that is seen from its edge
@@ -94,12 +84,13 @@ LightEmission::LightEmission(const TracerScene& scene, const Bounds& content) : 
     boxes_ = boxesAround(content_, whole_);
     const Lights& lights = *scene.lights;
     const auto add = [this](double power) { sums_.push_back(sums_.back() + std::max(0.0, power)); };
-    for (const LightSource& lamp : lights.lamps()) add(lamp.power(meanShadow(content_)));
+    const double area = meanProjectedArea(content_);
+    for (const LightSource& lamp : lights.lamps()) add(lamp.power(area));
     add(lights.emittedPower());
     add(lights.environment().black()
             ? 0
-            : 4 * kPi * lights.environment().meanLuminance() * meanShadow(content_));
-    add(lights.glow().black() ? 0 : 4 * kPi * lights.glow().intensity());
+            : parallelFlux(pointFlux(lights.environment().meanLuminance()), area));
+    add(lights.glow().black() ? 0 : pointFlux(lights.glow().intensity()));
 }
 
 /// From outside of the ball around everything.
@@ -108,22 +99,22 @@ Ray LightEmission::fromInfinity(const dvec3& direction, double choice, const dve
     area = 0;
     if (whole_.empty()) return {dvec3(0), direction};
     // Boxes that a direction sees from their edges have no shadow; all of them, where there is more than one.
-    const auto shadowOf = [&](size_t box) { return sumOf(shadowOfFaces(boxes_[box], direction)); };
+    const auto shadowOf = [&](size_t box) { return projectedArea(boxes_[box], direction); };
     const size_t last = boxes_.size() - 1;
     const double toContent = last > 0 && shadowOf(0) > 0 ? kToContent : 0.0,
                  toOther = last > 0 ? (1 - toContent) / double(last) : 1.0;
-    size_t aim = last;
+    size_t target = last;
     if (choice < toContent) {
-        aim = 0;
+        target = 0;
     } else if (last > 0) {
-        aim = 1 + std::min(size_t((choice - toContent) / toOther), last - 1);
+        target = 1 + std::min(size_t((choice - toContent) / toOther), last - 1);
     }
-    dvec3 position = pointOnShadow(boxes_[aim], direction, u);
+    dvec3 position = pointOnShadow(boxes_[target], direction, u);
     double density = 0;
     for (size_t box = 0; box <= last; ++box) {
         const double part = box == 0 && last > 0 ? toContent : toOther, shadow = shadowOf(box);
         // A point of a box's face is on that box's shadow, however it was rounded.
-        if (part > 0 && shadow > 0 && (box == aim || onShadow(boxes_[box], position, direction)))
+        if (part > 0 && shadow > 0 && (box == target || onShadow(boxes_[box], position, direction)))
             density += part / shadow;
     }
     area = density > 0 ? 1 / density : 0;
@@ -149,7 +140,7 @@ EmittedRay LightEmission::sample(Sampler& sampler) const {
         if (lamp.local()) {
             out = lamp.emit(where, way);
         } else {
-            const LightSample sun = lamp.sample(whole_.empty() ? dvec3(0) : whole_.centre(), way);
+            const LampSample sun = lamp.sample(whole_.empty() ? dvec3(0) : whole_.centre(), way);
             out.ray = fromInfinity(-sun.direction, choice.y, where, area);
             if (sun.density > 0) out.power = sun.radiance * (area / sun.density);
             out.distant = true;

@@ -11,7 +11,7 @@ namespace tyndall::tracing {
 /// fog that box is as large as the ball around it, whatever the direction; what the fog outside of it scatters is left out, but not what it takes away.
 class LightEmission {
 public:
-    /// `scene` must outlive it. `content`: where most of light from infinity is to be aimed; empty: everywhere alike.
+    /// `scene` must outlive it. `content`: what most rays of light from infinity are sampled towards; empty: everything alike.
     explicit LightEmission(const TracerScene& scene, const Bounds& content = {});
 
     [[nodiscard]] bool black() const { return !(sums_.back() > 0); }
@@ -28,7 +28,8 @@ private:
 
     const TracerScene& scene_;
     Bounds whole_, content_;    // around everything, and around what most rays are to meet
-    std::vector<Bounds> boxes_; // from the content out to all: what light from infinity is aimed at
+    std::vector<Bounds>
+        boxes_; // that rays from infinity are sampled towards: content first, all last
     std::vector<double> sums_{0.0}; // cumulative power, as Lights counts them
 };
 

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/check.h"
+#include "scene/light_flux.h"
 
 namespace tyndall::tracing {
 namespace {
@@ -72,12 +73,12 @@ dvec3 LightSource::fading(const dvec3& travel, double distance) const {
     return power_ * factor;
 }
 
-LightSample LightSource::sample(const dvec3& from, const dvec2& u) const {
+LampSample LightSource::sample(const dvec3& from, const dvec2& u) const {
     if (black_) return {};
     if (type_ == LightType::Directional) return sampleSun(u);
     if (type_ == LightType::Rect) return sampleRect(from, u);
     if (radius_ > 0) return sampleBall(from, u);
-    LightSample result;
+    LampSample result;
     const dvec3 way = centre_ - from;
     result.distance = glm::length(way);
     if (!(result.distance > 0)) return {};
@@ -88,8 +89,8 @@ LightSample LightSource::sample(const dvec3& from, const dvec2& u) const {
     return result;
 }
 
-LightSample LightSource::sampleSun(const dvec2& u) const {
-    LightSample result;
+LampSample LightSource::sampleSun(const dvec2& u) const {
+    LampSample result;
     result.distance = kInfinity;
     if (delta_) {
         result.direction = -axis_;
@@ -105,11 +106,11 @@ LightSample LightSource::sampleSun(const dvec2& u) const {
     return result;
 }
 
-LightSample LightSource::sampleRect(const dvec3& from, const dvec2& u) const {
+LampSample LightSource::sampleRect(const dvec3& from, const dvec2& u) const {
     const dvec3 at = centre_ + (2 * u.x - 1) * halfX_ + (2 * u.y - 1) * halfY_, way = at - from;
     const double squared = glm::dot(way, way);
     if (!(squared > 0)) return {};
-    LightSample result;
+    LampSample result;
     result.distance = std::sqrt(squared);
     result.direction = way / result.distance;
     const double cosine = -glm::dot(axis_, result.direction);
@@ -119,13 +120,13 @@ LightSample LightSource::sampleRect(const dvec3& from, const dvec2& u) const {
     return result;
 }
 
-LightSample LightSource::sampleBall(const dvec3& from, const dvec2& u) const {
+LampSample LightSource::sampleBall(const dvec3& from, const dvec2& u) const {
     const dvec3 way = centre_ - from;
     const double squared = glm::dot(way, way), r2 = radius_ * radius_;
     if (!(squared > r2 * (1 + 1e-9))) return {}; // inside: the ball shines outwards
     const double sine2 = r2 / squared, versine = sine2 / (1 + std::sqrt(1 - sine2));
     const double z = 1 - u.x * versine;
-    LightSample result;
+    LampSample result;
     result.direction =
         glm::normalize(Frame(way / std::sqrt(squared)).toWorld(directionAround(z, u.y)));
     // Nearer root, from the point nearest to the centre; a grazing ray that rounding takes past the ball touches it.
@@ -137,8 +138,8 @@ LightSample LightSource::sampleBall(const dvec3& from, const dvec2& u) const {
     return result;
 }
 
-LightSample LightSource::meet(const Ray& ray) const {
-    LightSample result;
+LampSample LightSource::meet(const Ray& ray) const {
+    LampSample result;
     if (black_ || delta_ || !castsShadows_) return result;
     result.direction = ray.direction;
     if (type_ == LightType::Directional) {
@@ -177,12 +178,15 @@ LightSample LightSource::meet(const Ray& ray) const {
     return result;
 }
 
-double LightSource::power(double discArea) const {
+/// Chances follow from it, and no light: emit() and sample() have formulas of their own. A spot counts with all that its rays could carry
+/// where they are drawn, its cone or a ball's whole sphere, so that no ray stands for more than the sum of these.
+double LightSource::power(double area) const {
     if (black_) return 0;
-    if (type_ == LightType::Directional) return meanOf(power_) * discArea;
-    if (type_ == LightType::Rect) return meanOf(power_) * kPi * area_;
-    const double cone = type_ == LightType::Spot && radius_ == 0 ? 0.5 * (1 - cosineOuter_) : 1;
-    return meanOf(power_) * 4 * kPi * cone;
+    const double mean = meanOf(power_);
+    if (type_ == LightType::Directional) return parallelFlux(mean, area);
+    if (type_ == LightType::Rect) return lambertFlux(mean, area_);
+    if (type_ == LightType::Spot && radius_ == 0) return coneFlux(mean, cosineOuter_);
+    return pointFlux(mean);
 }
 
 EmittedRay LightSource::emit(const dvec2& where, const dvec2& way) const {

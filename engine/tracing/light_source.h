@@ -1,14 +1,14 @@
 #pragma once
 // One of the scene's lights as the reference sees it. Lights have no surface that could be seen or could block: a ball or a
-// rectangle shines along rays that pass through it, a point or a sun without a disc only along rays that are aimed at it.
+// rectangle shines along rays that pass through it, a point or a sun without a disc only along rays that are sampled towards it.
 
 #include "tracing/ray.h"
 #include "scene/scene.h"
 
 namespace tyndall::tracing {
 
-/// A way from a point to a light.
-struct LightSample {
+/// A direction from a point to a light.
+struct LampSample {
     dvec3 direction{0};  // unit, towards the light
     double distance = 0; // metres; infinite for light from infinity
     dvec3 radiance{0};   // nits; of a light without extent: lux on a facing surface
@@ -32,21 +32,21 @@ public:
     LightSource(const Light& light, const dmat4& rayFromNode);
 
     [[nodiscard]] bool black() const { return black_; }
-    /// Rays cannot meet it by chance.
+    /// No ray hits it: it has no extent.
     [[nodiscard]] bool delta() const { return delta_; }
     [[nodiscard]] bool castsShadows() const { return castsShadows_; }
 
-    [[nodiscard]] LightSample sample(const dvec3& from, const dvec2& u) const;
+    [[nodiscard]] LampSample sample(const dvec3& from, const dvec2& u) const;
     /// Where the ray meets the light, if it does: distance, radiance, and the density with which sample() from the ray's
     /// origin would have chosen this way; density 0: it does not. Always 0 for delta lights.
-    [[nodiscard]] LightSample meet(const Ray& ray) const;
+    [[nodiscard]] LampSample meet(const Ray& ray) const;
 
     /// Roughly the luminance-weighted illuminance on a facing surface at `from`, shadows and media left out.
     [[nodiscard]] double importance(const dvec3& from) const;
     /// Roughly ∫ importance dt along [0,length] of the ray.
     [[nodiscard]] double importanceAlong(const Ray& ray, double length) const;
-    /// Watts, the mean of the channels; of a spot, as much as its whole outer cone could have. `discArea`: m², of what light from infinity falls on.
-    [[nodiscard]] double power(double discArea) const;
+    /// Watts, the mean of the channels; of a spot, those of its whole outer cone at full intensity. `area`: m², what light from infinity falls on.
+    [[nodiscard]] double power(double area) const;
     /// A ray of a light at a place in space. CHECKs local().
     [[nodiscard]] EmittedRay emit(const dvec2& where, const dvec2& way) const;
 
@@ -56,9 +56,9 @@ public:
 
 private:
     [[nodiscard]] dvec3 fading(const dvec3& travel, double distance) const;
-    [[nodiscard]] LightSample sampleBall(const dvec3& from, const dvec2& u) const;
-    [[nodiscard]] LightSample sampleRect(const dvec3& from, const dvec2& u) const;
-    [[nodiscard]] LightSample sampleSun(const dvec2& u) const;
+    [[nodiscard]] LampSample sampleBall(const dvec3& from, const dvec2& u) const;
+    [[nodiscard]] LampSample sampleRect(const dvec3& from, const dvec2& u) const;
+    [[nodiscard]] LampSample sampleSun(const dvec2& u) const;
 
     LightType type_;
     bool black_ = true, delta_ = true, castsShadows_ = true;

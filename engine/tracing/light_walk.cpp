@@ -8,7 +8,7 @@ namespace {
 
 /// Light that grazes a facet under a tilted shading normal would weigh without bound.
 constexpr double kLeastCosine = 1e-3;
-/// Of what is scattered outside of the ball around the content, so much is aimed at it.
+/// Of what is scattered outside of the ball around the content, so much is sampled towards it.
 constexpr double kOnToContent = 0.5;
 
 /// What a shading normal makes of light that falls in along `travel`: its cosine over that of the facet (Veach 1997, 5.3).
@@ -32,7 +32,7 @@ dvec3 WalkVertex::intensity(const dvec3& direction) const {
     return power * reflected * (facet / std::max(shading, kLeastCosine));
 }
 
-LightWalker::Aim LightWalker::aimFrom(const dvec3& position) const {
+LightWalker::ContentCone LightWalker::contentConeFrom(const dvec3& position) const {
     const dvec3 way = centre_ - position;
     const double distance = glm::length(way);
     if (!(radius_ > 0) || !(distance > radius_) || !std::isfinite(distance)) return {};
@@ -40,111 +40,134 @@ LightWalker::Aim LightWalker::aimFrom(const dvec3& position) const {
     return {way / distance, sine * sine / (1 + std::sqrt(1 - sine * sine))};
 }
 
-dvec3 LightWalker::Aim::sample(const dvec2& u) const {
+dvec3 LightWalker::ContentCone::sample(const dvec2& u) const {
     const double v = u.x * versine, sine = std::sqrt(v * (2 - v)), azimuth = 2 * kPi * u.y;
     return glm::normalize(
         Frame(axis).toWorld({sine * std::cos(azimuth), sine * std::sin(azimuth), 1 - v}));
 }
 
-double LightWalker::Aim::density(const dvec3& direction, double own) const {
+double LightWalker::ContentCone::density(const dvec3& direction, double own) const {
     const dvec3 apart = direction - axis;
     const bool within = 0.5 * glm::dot(apart, apart) <= versine;
     return (1 - kOnToContent) * own + (within ? kOnToContent / (2 * kPi * versine) : 0.0);
 }
 
-bool LightWalker::survives(double carried, double started, size_t vertices, Sampler& sampler,
-                           PathWeights& weights) const {
+bool LightWalker::survives(size_t vertices, Sampler& sampler, Progress& progress) const {
+    const double carried = maximumOf(progress.weights.carried());
     if (!(carried > 0)) return false;
     if (vertices < 2) return true;
     const double chance =
-        std::clamp(carried / started, settings_.leastSurvival, settings_.mostSurvival);
+        std::clamp(carried / progress.started, settings_.leastSurvival, settings_.mostSurvival);
     if (!(sampler.random() < chance)) return false;
-    weights.throughput /= chance;
+    progress.weights.throughput /= chance;
+    return true;
+}
+
+bool LightWalker::begin(Sampler& sampler, Progress& progress) {
+    start_ = emission_.sample(sampler);
+    progress.started = maximumOf(start_.power);
+    if (!(progress.started > 0) || !std::isfinite(progress.started)) return false;
+    progress.weights.throughput = start_.power;
+    if (!scene_.media->grey()) progress.weights.hero = std::min(2, int(3 * sampler.next1()));
+    progress.ray = start_.ray;
+    return true;
+}
+
+bool LightWalker::addVertex(Sampler& sampler, Progress& progress, std::vector<WalkVertex>& walk) {
+    ++rays_;
+    PathWeights& weights = progress.weights;
+    const RayHit hit =
+        scene_.surfaces->intersect(progress.ray, 0, kInfinity, RayKind::Path, sampler.bits());
+    MediaSegment::Flight segment{false, hit.distance};
+    if (!scene_.media->empty()) {
+        segment_.start(progress.ray, hit.distance);
+        segment = segment_.fly(sampler, weights, mediumPoint_, emitted_);
+    }
+    if (!segment.collided && !hit.found()) return false;
+    if (walk.empty()) weights.throughput *= rangeWindow(start_.range, segment.distance);
+    if (weights.throughput == dvec3(0)) return false;
+    const double choice = sampler.next1();
+    const dvec2 u = sampler.next2();
+    WalkVertex vertex;
+    vertex.travel = progress.ray.direction;
+    vertex.scatterings = int(walk.size()) + 1;
+    if (segment.collided) {
+        enterMedium(segment.distance, choice, progress, vertex);
+        walk.push_back(vertex);
+        scatterInMedium(vertex, u, sampler, progress);
+        return true;
+    }
+    vertex.point = scene_.surfaces->pointAt(progress.ray, hit);
+    if (vertex.point.unlit) return false;
+    vertex.position = vertex.point.position;
+    weights.throughput *= tilt(vertex.point.surface, vertex.travel);
+    vertex.power = weights.carried();
+    walk.push_back(vertex);
+    return scatterOnSurface(vertex, choice, u, sampler, progress);
+}
+
+void LightWalker::enterMedium(double distance, double choice, Progress& progress,
+                              WalkVertex& vertex) const {
+    PathWeights& weights = progress.weights;
+    dvec3 share;
+    vertex.medium = &mediumPoint_.pick(weights.hero, choice, share);
+    vertex.position = progress.ray.at(distance);
+    weights.throughput *= share;
+    weights.ratio *= share; // every hero would have drawn it by its own scattering
+    vertex.power = weights.carried();
+}
+
+void LightWalker::scatterInMedium(const WalkVertex& vertex, const dvec2& u, Sampler& sampler,
+                                  Progress& progress) const {
+    const ContentCone cone = contentConeFrom(vertex.position);
+    dvec3 direction;
+    if (cone.versine > 0 && sampler.random() < kOnToContent) {
+        direction = cone.sample(u);
+    } else {
+        const double cosine = std::clamp(vertex.medium->samplePhase(u.x), -1.0, 1.0);
+        direction = glm::normalize(Frame(vertex.travel).toWorld(directionAround(cosine, u.y)));
+    }
+    if (cone.versine > 0) {
+        const dvec3 apart = direction - vertex.travel;
+        const double phase = vertex.medium->phaseValue(0.5 * glm::dot(apart, apart)),
+                     weight = phase / cone.density(direction, phase);
+        progress.weights.throughput *= weight;
+        progress.started *= weight;
+    }
+    progress.ray = {vertex.position, direction};
+}
+
+bool LightWalker::scatterOnSurface(const WalkVertex& vertex, double choice, const dvec2& u,
+                                   Sampler& sampler, Progress& progress) const {
+    const Bsdf bsdf(vertex.point.surface, -vertex.travel);
+    const ContentCone cone = contentConeFrom(vertex.position);
+    BsdfSample sample;
+    if (cone.versine > 0 && sampler.random() < kOnToContent) {
+        sample.direction = cone.sample(u);
+        sample.weight = bsdf.evaluate(sample.direction);
+        sample.density = bsdf.density(sample.direction);
+        sample.weight /= sample.density > 0 ? sample.density : 1.0;
+    } else {
+        sample = bsdf.sample(choice, u);
+    }
+    if (sample.weight == dvec3(0)) return false;
+    if (cone.versine > 0) {
+        const double weight = sample.density / cone.density(sample.direction, sample.density);
+        sample.weight *= weight;
+        progress.started *= weight;
+    }
+    progress.weights.throughput *=
+        sample.weight / std::max(tilt(vertex.point.surface, sample.direction), kLeastCosine);
+    progress.ray = rayFrom(vertex.point, sample.direction);
     return true;
 }
 
 void LightWalker::trace(Sampler& sampler, std::vector<WalkVertex>& walk) {
     walk.clear();
-    start_ = emission_.sample(sampler);
-    double started = maximumOf(start_.power);
-    if (!(started > 0) || !std::isfinite(started)) return;
-    PathWeights weights;
-    weights.throughput = start_.power;
-    if (!scene_.media->grey()) weights.hero = std::min(2, int(3 * sampler.next1()));
-    Ray ray = start_.ray;
-    for (;;) {
-        ++rays_;
-        const RayHit hit =
-            scene_.surfaces->intersect(ray, 0, kInfinity, RayKind::Path, sampler.bits());
-        MediaSegment::Flight flight{false, hit.distance};
-        if (!scene_.media->empty()) {
-            segment_.start(ray, hit.distance);
-            flight = segment_.fly(sampler, weights, mediumPoint_, emitted_);
-        }
-        if (!flight.collided && !hit.found()) return;
-        WalkVertex vertex;
-        vertex.travel = ray.direction;
-        vertex.scatterings = int(walk.size()) + 1;
-        if (walk.empty()) weights.throughput *= rangeWindow(start_.range, flight.distance);
-        if (weights.throughput == dvec3(0)) return;
-        const double choice = sampler.next1();
-        const dvec2 u = sampler.next2();
-        if (flight.collided) {
-            dvec3 share;
-            vertex.medium = &mediumPoint_.pick(weights.hero, choice, share);
-            vertex.position = ray.at(flight.distance);
-            weights.throughput *= share;
-            weights.ratio *= share; // every hero would have drawn it by its own scattering
-            vertex.power = weights.carried();
-            walk.push_back(vertex);
-            const Aim aim = aimFrom(vertex.position);
-            dvec3 direction;
-            if (aim.versine > 0 && sampler.random() < kOnToContent) {
-                direction = aim.sample(u);
-            } else {
-                const double cosine = std::clamp(vertex.medium->samplePhase(u.x), -1.0, 1.0);
-                direction =
-                    glm::normalize(Frame(ray.direction).toWorld(directionAround(cosine, u.y)));
-            }
-            if (aim.versine > 0) {
-                const dvec3 apart = direction - ray.direction;
-                const double phase = vertex.medium->phaseValue(0.5 * glm::dot(apart, apart)),
-                             weight = phase / aim.density(direction, phase);
-                weights.throughput *= weight;
-                started *= weight;
-            }
-            ray = {vertex.position, direction};
-        } else {
-            vertex.point = scene_.surfaces->pointAt(ray, hit);
-            if (vertex.point.unlit) return;
-            vertex.position = vertex.point.position;
-            weights.throughput *= tilt(vertex.point.surface, ray.direction);
-            vertex.power = weights.carried();
-            walk.push_back(vertex);
-            const Bsdf bsdf(vertex.point.surface, -ray.direction);
-            const Aim aim = aimFrom(vertex.position);
-            BsdfSample sample;
-            if (aim.versine > 0 && sampler.random() < kOnToContent) {
-                sample.direction = aim.sample(u);
-                sample.weight = bsdf.evaluate(sample.direction);
-                sample.density = bsdf.density(sample.direction);
-                sample.weight /= sample.density > 0 ? sample.density : 1.0;
-            } else {
-                sample = bsdf.sample(choice, u);
-            }
-            if (sample.weight == dvec3(0)) return;
-            if (aim.versine > 0) {
-                const double weight =
-                    sample.density / aim.density(sample.direction, sample.density);
-                sample.weight *= weight;
-                started *= weight;
-            }
-            weights.throughput *=
-                sample.weight /
-                std::max(tilt(vertex.point.surface, sample.direction), kLeastCosine);
-            ray = rayFrom(vertex.point, sample.direction);
-        }
-        if (!survives(maximumOf(weights.carried()), started, walk.size(), sampler, weights)) return;
+    Progress progress;
+    if (!begin(sampler, progress)) return;
+    while (addVertex(sampler, progress, walk)) {
+        if (!survives(walk.size(), sampler, progress)) return;
         if (int(walk.size()) >= settings_.longest) {
             ++cutOff_;
             return;

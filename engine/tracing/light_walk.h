@@ -27,7 +27,7 @@ struct WalkSettings {
     double leastSurvival = 0.05, mostSurvival = 0.95;
 };
 
-/// Makes walks, one for each sampler. Keeps scratch memory: one for each thread. Outside of the ball around what the emission aims at, half of them are
+/// Makes walks, one for each sampler. Keeps scratch memory: one for each thread. Outside of the ball around the emission's content, half of them are
 /// scattered on towards it: without that the rare walk that finds its way back from a landscape carries the power of square miles.
 class LightWalker {
 public:
@@ -47,16 +47,31 @@ public:
 
 private:
     /// Directions from a point to the ball around the content: a cone.
-    struct Aim {
+    struct ContentCone {
         dvec3 axis{0, 0, 1}; // unit
         double versine = 0;  // 1 - cosine of half its angle; 0: none, the point is in the ball
         [[nodiscard]] dvec3 sample(const dvec2& u) const;
         /// Of directions that are drawn by `own` or, with a chance of kOnToContent, from the cone: per steradian.
         [[nodiscard]] double density(const dvec3& direction, double own) const;
     };
-    [[nodiscard]] Aim aimFrom(const dvec3& position) const;
-    bool survives(double carried, double started, size_t vertices, Sampler& sampler,
-                  PathWeights& weights) const;
+    [[nodiscard]] ContentCone contentConeFrom(const dvec3& position) const;
+    /// A walk between two vertices.
+    struct Progress {
+        Ray ray;
+        PathWeights weights;
+        double started =
+            0; // what it began with, with the weights of directions towards the content
+    };
+    bool begin(Sampler& sampler, Progress& progress);
+    /// Follows the ray to the next vertex and draws the ray that leaves it; false: the walk ends, with or without the vertex.
+    bool addVertex(Sampler& sampler, Progress& progress, std::vector<WalkVertex>& walk);
+    void enterMedium(double distance, double choice, Progress& progress, WalkVertex& vertex) const;
+    void scatterInMedium(const WalkVertex& vertex, const dvec2& u, Sampler& sampler,
+                         Progress& progress) const;
+    bool scatterOnSurface(const WalkVertex& vertex, double choice, const dvec2& u, Sampler& sampler,
+                          Progress& progress) const;
+    /// Russian roulette, from the third vertex on.
+    bool survives(size_t vertices, Sampler& sampler, Progress& progress) const;
     const TracerScene& scene_;
     const LightEmission& emission_;
     WalkSettings settings_;

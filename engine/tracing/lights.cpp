@@ -137,16 +137,16 @@ size_t Lights::pick(const LightChoice& choice, double& u) {
     return last;
 }
 
-AimedSample Lights::aim(size_t light, const dvec3& from, double u0, const dvec2& u) const {
-    AimedSample result;
+LightSample Lights::sample(size_t light, const dvec3& from, double u0, const dvec2& u) const {
+    LightSample result;
     if (light < lamps_.size()) {
-        static_cast<LightSample&>(result) = lamps_[light].sample(from, u);
+        static_cast<LampSample&>(result) = lamps_[light].sample(from, u);
         result.delta = lamps_[light].delta() || !lamps_[light].castsShadows();
         result.shadowed = lamps_[light].castsShadows();
     } else if (light == trianglesIndex()) {
-        result = aimAtTriangle(from, u0, u);
+        result = sampleTriangle(from, u0, u);
     } else if (light == glowIndex()) {
-        result = aimAtGlow(from, u0, u);
+        result = sampleGlow(from, u0, u);
     } else {
         const DirectionSample sample = environment_.sample(u);
         result.direction = sample.direction;
@@ -157,8 +157,8 @@ AimedSample Lights::aim(size_t light, const dvec3& from, double u0, const dvec2&
     return result;
 }
 
-AimedSample Lights::aimAtGlow(const dvec3& from, double u0, const dvec2& u) const {
-    AimedSample result;
+LightSample Lights::sampleGlow(const dvec3& from, double u0, const dvec2& u) const {
+    LightSample result;
     const GlowSample sample = glow_.sample(u0, u);
     const dvec3 way = sample.position - from;
     const double squared = glm::dot(way, way);
@@ -218,8 +218,8 @@ EmittedRay Lights::emitFromTriangle(double u0, const dvec2& where, const dvec2& 
     return out;
 }
 
-AimedSample Lights::aimAtTriangle(const dvec3& from, double u0, const dvec2& u) const {
-    AimedSample result;
+LightSample Lights::sampleTriangle(const dvec3& from, double u0, const dvec2& u) const {
+    LightSample result;
     if (emitters_.empty()) return result;
     const auto [i, hit, at] = pickPoint(u0, u);
     const dvec3 way = at - from;

@@ -1,5 +1,5 @@
 #pragma once
-// All light of a scene: lamps, glowing triangles, the environment, glowing media; and which of them to aim at.
+// All light of a scene: lamps, glowing triangles, the environment, glowing media; and which of them to sample.
 
 #include <vector>
 
@@ -10,16 +10,16 @@
 
 namespace tyndall::tracing {
 
-/// A way to some light, chosen among all of them. `density` includes the chance of choosing that light.
-struct AimedSample : LightSample {
-    bool delta = false;   // no ray meets it by chance
+/// A sample of any kind of light. Lights::sample() leaves the chance of choosing that light out of `density`.
+struct LightSample : LampSample {
+    bool delta = false;   // no ray hits it
     bool shadowed = true; // surfaces block it
     /// Of glowing media: radiance is per metre, density per steradian and metre, and a ray that passes meets so many points a metre.
     double pointsPerMetre = 1;
     bool valid() const { return density > 0 && maximumOf(radiance) > 0; }
 };
 
-/// How likely each light is to be aimed at, from a point or from along a piece of a ray.
+/// How likely each light is to be sampled, from a point or from along a piece of a ray.
 class LightChoice {
 public:
     /// Of light number `light`; 0 where there is no light at all.
@@ -50,16 +50,16 @@ public:
     [[nodiscard]] const GlowSource& glow() const { return glow_; }
     [[nodiscard]] const EnvironmentSource& environment() const { return environment_; }
     [[nodiscard]] bool black() const;
-    [[nodiscard]] size_t emittingTriangles() const { return emitters_.size(); }
 
-    /// From a point. `constantEnvironment`: whether to aim at an environment that is the same all round.
+    /// From a point. `constantEnvironment`: whether to sample an environment that is the same all round.
     void choose(const dvec3& from, bool constantEnvironment, LightChoice& choice) const;
     /// From along [0,length] of the ray, a finite one.
     void chooseAlong(const Ray& ray, double length, LightChoice& choice) const;
     /// Which light `u` picks, and u made fresh for other use.
     [[nodiscard]] static size_t pick(const LightChoice& choice, double& u);
-    /// A way to light number `light` from a point; density without the chance of that light.
-    [[nodiscard]] AimedSample aim(size_t light, const dvec3& from, double u0, const dvec2& u) const;
+    /// A sample of light number `light` as seen from a point; its density without the chance of that light.
+    [[nodiscard]] LightSample sample(size_t light, const dvec3& from, double u0,
+                                     const dvec2& u) const;
 
     /// Watts that all glowing triangles send out, the mean of the channels; a bound where textures dim them.
     [[nodiscard]] double emittedPower() const { return kPi * emitterSums_.back(); }
@@ -67,7 +67,7 @@ public:
     [[nodiscard]] EmittedRay emitFromTriangle(double u0, const dvec2& where,
                                               const dvec2& way) const;
 
-    /// Density per steradian with which aim() finds this point of a glowing triangle from `from`.
+    /// Density per steradian with which sample() finds this point of a glowing triangle from `from`.
     [[nodiscard]] double emitterDensity(uint32_t emitter, const dvec3& from, const dvec3& at) const;
 
 private:
@@ -75,7 +75,7 @@ private:
         uint32_t instance, triangle;
     };
     void collectEmitters(SurfaceScene& surfaces);
-    [[nodiscard]] AimedSample aimAtGlow(const dvec3& from, double u0, const dvec2& u) const;
+    [[nodiscard]] LightSample sampleGlow(const dvec3& from, double u0, const dvec2& u) const;
     /// Which triangle `u` picks, and a point of it.
     struct PointOfTriangle {
         size_t emitter = 0;
@@ -83,7 +83,7 @@ private:
         dvec3 position{0};
     };
     [[nodiscard]] PointOfTriangle pickPoint(double u0, const dvec2& u) const;
-    [[nodiscard]] AimedSample aimAtTriangle(const dvec3& from, double u0, const dvec2& u) const;
+    [[nodiscard]] LightSample sampleTriangle(const dvec3& from, double u0, const dvec2& u) const;
 
     std::vector<LightSource> lamps_;
     EnvironmentSource environment_;

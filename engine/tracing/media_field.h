@@ -98,7 +98,7 @@ public:
     [[nodiscard]] double end() const { return end_; }
     [[nodiscard]] double minimum() const { return minimum_; }
     [[nodiscard]] double maximum() const { return maximum_; }
-    /// A guess at the mean density, the same for every ray through the piece.
+    /// An estimate of the mean density, the same for every ray through the piece.
     [[nodiscard]] double mean() const { return mean_; }
     void next();
     /// The density at a point of the present piece.

@@ -102,7 +102,7 @@ bool MediaSegment::extend() {
             if (!(walk.maximum() > 0)) continue;
             const MediumSource& medium = walk.medium();
             piece.majorant += walk.maximum() * medium.extinction;
-            piece.guess += walk.mean() * meanOf(medium.extinction);
+            piece.estimate += walk.mean() * meanOf(medium.extinction);
             const bool constant = walk.minimum() == walk.maximum();
             piece.uniform = piece.uniform && constant && !medium.emits();
             parts_.push_back({&medium, constant ? walk.maximum() : -1});
@@ -120,7 +120,7 @@ bool MediaSegment::extend() {
         if (piece.partCount == 0) continue; // empty space
         addEmissionMajorants(piece);
         piece.depthBefore = depth_;
-        if (piece.guess > 0) depth_ += piece.guess * (piece.end - piece.begin);
+        if (piece.estimate > 0) depth_ += piece.estimate * (piece.end - piece.begin);
         pieces_.push_back(piece);
         return true;
     }
@@ -158,7 +158,7 @@ MediaSegment::Flight MediaSegment::fly(Sampler& sampler, PathWeights& weights, M
     const int hero = weights.hero;
     double depth =
         -std::log1p(-sampler.next1()); // of the hero, left until the next tentative collision
-    // The hero's part of the attenuation is in the density of getting here; what channels differ by is weighed.
+    // The hero's part of the attenuation is in the density of getting here; what channels differ by is in PathWeights::ratio.
     const auto attenuate = [&](const dvec3& majorant, double distance) {
         if (grey) return;
         for (int c = 0; c < 3; ++c) {
@@ -211,7 +211,7 @@ Interval MediaSegment::reach() {
     Interval result{pieces_.front().begin, pieces_.back().end};
     const SegmentPiece& last = pieces_.back();
     if (depth_ > kDeepest && last.depthBefore < kDeepest)
-        result.end = std::min(last.end, last.begin + (kDeepest - last.depthBefore) / last.guess);
+        result.end = std::min(last.end, last.begin + (kDeepest - last.depthBefore) / last.estimate);
     return result;
 }
 
@@ -234,7 +234,7 @@ const SegmentPiece* MediaSegment::pieceAt(double t) {
 double MediaSegment::flightDensity(double t) {
     const SegmentPiece* piece = pieceAt(t);
     if (!piece) return 0;
-    return piece->guess * std::exp(-(piece->depthBefore + piece->guess * (t - piece->begin)));
+    return piece->estimate * std::exp(-(piece->depthBefore + piece->estimate * (t - piece->begin)));
 }
 
 double MediaSegment::collisionDensity(double t) {
@@ -242,8 +242,8 @@ double MediaSegment::collisionDensity(double t) {
     if (!(chance > 0)) return 0;
     const SegmentPiece* piece = pieceAt(t);
     if (!piece) return 0;
-    const double depth = piece->depthBefore + piece->guess * (t - piece->begin);
-    return depth <= kDeepest ? piece->guess * std::exp(-depth) / chance : 0;
+    const double depth = piece->depthBefore + piece->estimate * (t - piece->begin);
+    return depth <= kDeepest ? piece->estimate * std::exp(-depth) / chance : 0;
 }
 
 MediaSegment::Draw MediaSegment::drawCollision(double u) {
@@ -254,9 +254,9 @@ MediaSegment::Draw MediaSegment::drawCollision(double u) {
         std::upper_bound(pieces_.begin(), pieces_.end(), target,
                          [](double value, const SegmentPiece& p) { return value < p.depthBefore; });
     if (piece != pieces_.begin()) --piece;
-    while (!(piece->guess > 0) && piece != pieces_.begin()) --piece;
-    if (!(piece->guess > 0)) return {};
-    const double t = std::clamp(piece->begin + (target - piece->depthBefore) / piece->guess,
+    while (!(piece->estimate > 0) && piece != pieces_.begin()) --piece;
+    if (!(piece->estimate > 0)) return {};
+    const double t = std::clamp(piece->begin + (target - piece->depthBefore) / piece->estimate,
                                 piece->begin, piece->end);
     return {t, collisionDensity(t)};
 }

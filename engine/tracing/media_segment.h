@@ -1,5 +1,5 @@
 #pragma once
-// What a piece of a path meets in the media: bounds and guesses for drawing points on it, the free flight of light along it,
+// What a piece of a path meets in the media: bounds and estimates for drawing points on it, the free flight of light along it,
 // and the part of light that gets through.
 
 #include <vector>
@@ -60,7 +60,7 @@ enum class TransmittanceMode {
 struct SegmentPiece {
     double begin = 0, end = 0;
     dvec3 majorant{0}; // extinction bound, emission's share included, per metre
-    double guess = 0;  // mean extinction, per metre, of a channel that is the mean of all three
+    double estimate = 0; // mean extinction, per metre, of a channel that is the mean of all three
     double depthBefore = 0; // of that channel, from the segment's start
     bool uniform = false;   // the densities are the same throughout
     uint32_t firstPart = 0, partCount = 0;
@@ -96,11 +96,11 @@ public:
     [[nodiscard]] Draw drawCollision(double u);
     /// Of drawCollision choosing `t`.
     [[nodiscard]] double collisionDensity(double t);
-    /// A guess at the density with which fly() collides at `t`: the same whenever asked, close to the truth on average.
+    /// An estimate of the density with which fly() collides at `t`: the same whenever asked, close to the truth on average.
     [[nodiscard]] double flightDensity(double t);
     /// Where drawCollision draws.
     [[nodiscard]] Interval reach();
-    /// The chance of a collision within reach(), as guessed.
+    /// The chance of a collision within reach(), estimated.
     [[nodiscard]] double collisionChance();
 
     static constexpr double kDeepest = 7;

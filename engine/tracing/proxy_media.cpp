@@ -69,7 +69,7 @@ bool glows(const Medium& medium) {
     return medium.emission != vec3(0) || medium.temperatureScale > 0;
 }
 
-void guess(Medium& medium, dmat4& rayFromNode) {
+void makeProxy(Medium& medium, dmat4& rayFromNode) {
     if (glows(medium)) return;
     medium.scattering = rounded(medium.scattering);
     medium.absorption = rounded(medium.absorption);
@@ -115,7 +115,7 @@ uint64_t hashOf(const Medium& medium, const dmat4& rayFromNode, uint64_t hash) {
 ProxyMedia makeProxyMedia(const Scene& scene, const dvec3& origin) {
     uint64_t hash = 0;
     MediaField field(scene, origin, [&](Medium& medium, dmat4& rayFromNode) {
-        guess(medium, rayFromNode);
+        makeProxy(medium, rayFromNode);
         hash = hashOf(medium, rayFromNode, hash);
     });
     return {std::move(field), hash};
@@ -128,10 +128,10 @@ void reweigh(const EmittedRay& start, std::vector<WalkVertex>& walk, const Media
         return transmittance(field, ray, length, TransmittanceMode::Exact, unused);
     };
     const auto ratio = [&](const Ray& ray, double length) {
-        const dvec3 now = through(to, ray, length), guessed = through(from, ray, length);
+        const dvec3 now = through(to, ray, length), proxy = through(from, ray, length);
         dvec3 result;
-        // So little got through the stand-in that no walk did.
-        for (int c = 0; c < 3; ++c) result[c] = guessed[c] > 0 ? now[c] / guessed[c] : 0;
+        // So little got through the proxy that no walk did.
+        for (int c = 0; c < 3; ++c) result[c] = proxy[c] > 0 ? now[c] / proxy[c] : 0;
         return result;
     };
     dvec3 carried(1);
@@ -141,9 +141,9 @@ void reweigh(const EmittedRay& start, std::vector<WalkVertex>& walk, const Media
     for (WalkVertex& vertex : walk) {
         carried *= ratio({before, vertex.travel}, glm::length(vertex.position - before));
         if (vertex.medium) {
-            const MediumSource& guessed = *vertex.medium;
-            const MediumSource& now = to.media()[size_t(&guessed - from.media().data())];
-            const dvec3 was = guessed.density(vertex.position) * guessed.scattering,
+            const MediumSource& proxy = *vertex.medium;
+            const MediumSource& now = to.media()[size_t(&proxy - from.media().data())];
+            const dvec3 was = proxy.density(vertex.position) * proxy.scattering,
                         is = now.density(vertex.position) * now.scattering;
             for (int c = 0; c < 3; ++c) carried[c] *= was[c] > 0 ? is[c] / was[c] : 0;
             vertex.medium = &now;

@@ -181,19 +181,20 @@ void VirtualLightPath::gatherLights(const Vertex& vertex) {
     if (choice_.empty()) return;
     double u = sampler_->next1();
     const size_t light = Lights::pick(choice_, u);
-    const AimedSample aimed = scene_.lights->aim(light, vertex.position, u, sampler_->next2());
-    if (!aimed.valid()) return;
-    const dvec3 scattered = vertex.onSurface() ? vertex.bsdf->evaluate(aimed.direction)
-                                               : mediumPoint_.phase(vertex.before, aimed.direction);
+    const LightSample sample = scene_.lights->sample(light, vertex.position, u, sampler_->next2());
+    if (!sample.valid()) return;
+    const dvec3 scattered = vertex.onSurface()
+                                ? vertex.bsdf->evaluate(sample.direction)
+                                : mediumPoint_.phase(vertex.before, sample.direction);
     if (scattered == dvec3(0)) return;
-    const Ray shadow = vertex.rayTowards(aimed.direction);
+    const Ray shadow = vertex.rayTowards(sample.direction);
     ++counts_.shadowRays;
-    if (aimed.shadowed && scene_.surfaces->occluded(shadow, aimed.distance, sampler_->bits()))
+    if (sample.shadowed && scene_.surfaces->occluded(shadow, sample.distance, sampler_->bits()))
         return;
-    const dvec3 through = transmittance(*scene_.media, {vertex.position, aimed.direction},
-                                        aimed.distance, TransmittanceMode::Ratio, *sampler_);
-    see(history_, weights_.carried() * scattered * aimed.radiance * through /
-                      (aimed.density * choice_.chance(light)));
+    const dvec3 through = transmittance(*scene_.media, {vertex.position, sample.direction},
+                                        sample.distance, TransmittanceMode::Ratio, *sampler_);
+    see(history_, weights_.carried() * scattered * sample.radiance * through /
+                      (sample.density * choice_.chance(light)));
 }
 
 } // namespace tyndall::tracing

@@ -23,7 +23,7 @@
 #include "lighting/shadow.glsl"
 #include "media/near_glow.glsl"
 #endif
-#include "media/march_segment.glsl"
+#include "media/march_loop.glsl"
 #include "shared/march.h"
 
 #ifdef MARCH_OCTAVES
@@ -46,7 +46,6 @@ struct MarchResult {
 };
 
 const float kPointsPerRadian = 2.5; // at which light is gathered, as the light sees them
-const int kMostSegments = 16384; // ends a march whose coordinates have lost their meaning
 
 // ---- inside a segment ------------------------------------------------------------------------------------------
 
@@ -248,32 +247,30 @@ vec3 segmentInScatter(Ray ray, Segment s, uint lightCount, vec3 noise, uint turn
 /// From ray.origin over `distance` metres (1e30: endless). `flags`: kMarchInScatter, kMarchEmission. `pixel` seeds the noise.
 MarchResult marchMedia(Ray ray, float distance, uint flags, uint lightCount, uvec2 pixel) {
     MarchResult result = MarchResult(vec3(0.0), vec3(0.0), vec3(0.0));
-    float t;
-    float end;
-    if (!mediaExtent(ray, distance, t, end)) {
+    March march;
+    if (!beginMarch(ray, distance, march)) {
         // Nothing to gather light from; what is out there may still absorb.
         result.opticalDepth = opticalDepthAlong(ray.origin, ray.direction, distance);
         return result;
     }
     vec3 noise = vec3(pixelNoise(pixel, 0u), pixelNoise2(pixel, 1u));
     uint turn = uint(pixelNoise(pixel, 3u) * float(mediaHeader.environmentStride));
-    float opaque = -log(max(mediaHeader.minTransmittance, 1e-30));
-    for (int i = 0; i < kMostSegments && t < end && minimumOf(result.opticalDepth) < opaque; ++i) {
-        Segment s = marchSegment(ray, t, end);
-        t = s.start + s.size;
-        vec3 transmittance = exp(-result.opticalDepth);
+    Segment s;
+    while (nextSegment(ray, march, s)) {
+        vec3 transmittance = exp(-march.before);
 #if MARCH_GATHERS
         if ((flags & kMarchInScatter) != 0u && s.scatters)
             result.inScatter += transmittance * segmentInScatter(ray, s, lightCount, noise, turn);
 #endif
         if ((flags & kMarchEmission) != 0u)
             result.emission += transmittance * (s.emission * oneMinusExpOverX(s.depth) + (s.glows ? blackbodyLight(ray, s, noise.x) : vec3(0.0)));
-        result.opticalDepth = min(result.opticalDepth + s.depth, vec3(kOpaque));
         // Golden ratio and its generalisation to two dimensions: neighbouring segments differ as much as they can.
         noise = fract(noise + vec3(0.61803399, 0.75487767, 0.56984029));
         ++turn;
     }
-    if (t < distance) result.opticalDepth = min(result.opticalDepth + opticalDepthBetween(ray.origin, ray.direction, t, distance), vec3(kOpaque));
+    result.opticalDepth = march.before;
+    if (march.next < distance)
+        result.opticalDepth = min(result.opticalDepth + opticalDepthBetween(ray.origin, ray.direction, march.next, distance), vec3(kOpaque));
     return result;
 }
 

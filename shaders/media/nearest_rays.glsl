@@ -1,6 +1,7 @@
 // Where one ray is marched for 2×2 or 4×4 pixels: which ray that is, and how far each of the four nearest ones stands for a pixel.
 #ifndef TYNDALL_MEDIA_NEAREST_RAYS
 #define TYNDALL_MEDIA_NEAREST_RAYS
+#include "common/math.glsl"
 #include "shared/march.h"
 
 /// The pixel whose ray is marched for a square of pixels: its depth is its own, not a mixture.

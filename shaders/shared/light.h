@@ -24,7 +24,7 @@ struct LightData {
     uint type;
     uint flags;
     int shadowIndex;    // first entry of this light in `ShadowViews`, -1: casts no shadow
-    int opticalDepthIndex; // entry of this light in `OpticalDepthViews`, -1: no grid medium attenuates it
+    int padding0;
 };
 
 TYNDALL_SHARED_END

@@ -1,11 +1,10 @@
-// Virtual point lights: buffers `VplLights`, `VplWalks`, `VplMaps` and `VplTriangles`, and the parameters of who gathers them.
+// Virtual point lights: buffers `VplLights`, `VplWalks` and `VplMaps`, and the parameters of who gathers them.
 #ifndef TYNDALL_SHARED_VPL_H
 #define TYNDALL_SHARED_VPL_H
 #include "shared/types.h"
 TYNDALL_SHARED_BEGIN
 
 TYNDALL_CONST uint kVplDepthSteps = 16u;      // distances of a map of optical depth
-TYNDALL_CONST uint kVplNothing = 0xffffffffu; // in a map: nothing is seen in this direction
 
 struct VplData {
     vec4 position; // render space; w: -1 on a surface; else the phase function's kind
@@ -20,24 +19,6 @@ struct VplData {
 struct VplPlace {
     vec4 position; // as VplData's
     vec4 normal;
-};
-
-/// A triangle as what hides light.
-struct VplTriangle {
-    vec4 plane;  // n·p + w = 0, n unit; 0 without area
-    vec4 corner; // render space; w: 0 where rays pass parts of it, else 1
-    vec3 second; // dot(second, p - corner): barycentric coordinate of the second corner
-    uint coversLow;  // a bit for each piece that no ray passes (tracing::SceneTriangle)
-    vec3 third;      // as `second`, of the third
-    uint coversHigh;
-};
-
-/// As tracing::TreeNode.
-struct VplTreeNode {
-    vec3 minimum;
-    uint next;
-    vec3 maximum;
-    uint triangle; // kVplNothing: an inner node
 };
 
 /// A point of a surface, as what is splatted into maps.
@@ -75,14 +56,12 @@ struct VplParams {
         content; // middle of the box around what is in the scene, render space; w: 1/m², of half its diagonal, 0: bounds are the same everywhere
     uint samples;     // points at which a ray through media gathers
     uint mediaInView; // 0: the picture is seen through none
-    uint treeSize;    // nodes; 0: nothing is hidden
     uint lost;        // 1: lights give what the bound takes away from them, and nothing else
     float mediumClampSquared; // m²: 1/b in the content from surface to medium
     uint nearLight;           // 1: what the bound takes away and no step makes up for is in `VplNear`
     // Which lights count on surfaces and in media, a bit for each of kVplOfSurfaces and so on: each is the light of one term there.
     uint surfaceTerms, mediaTerms;
     uint upToFreePath; // 1: in a medium 1/b reaches no farther than the free path there
-    uint padding0, padding1, padding2;
 };
 
 // By the last scattering of a light's power, and by whether that was its first.

@@ -7,14 +7,12 @@ Scenes and references are those of lpv.py, and are kept in the same folder. Scen
 are left out with a note where it is missing.
 """
 
-import argparse
-import json
-import os
 import pathlib
 import sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).parent))
-from lpv import MEDIA, SIZE, SURFACES, Bench, cornell, load, milliseconds, scenes  # noqa: E402
+import harness  # noqa: E402
+from harness import MEDIA, SIZE, SURFACES, cornell, load, milliseconds, scenes  # noqa: E402
 from tables import ROOT, commit_date, machine, table  # noqa: E402
 
 GATHERING = ("gi.vpl.surfaces", "gi.vpl.upsampleSurfaces", "gi.vpl.refineSurfaces"), ("gi.vpl.march", "gi.vpl.upsample", "gi.vpl.refine")
@@ -24,21 +22,8 @@ FINE = "512x288"  # of a single frame: outlines of the reference are averages, a
 LONGER = {"cornell fog, τ 8": 2, "smoke in a room": 2, "Sponza with fog": 4, "cloud": 2}  # times as many frames, where they are needed
 
 
-class VplBench(Bench):
-    def picture(self, scene, label, *options, quality="high", size=SIZE):
-        """A picture and its report, made anew only where it is missing."""
-        path = scene.with_name(scene.name.replace(".scene.json", f".vpl.{label}.exr"))
-        report = path.with_suffix(".json")
-        if not report.exists():
-            self.run("capture", scene, "-o", path, "--size", size, "--aov", "terms", "--gi", "vpl", "--quality", quality, "--report", report, "--quiet", *options)
-        return path, json.loads(report.read_text())
-
-    def noise(self, scene, reference, fewer):
-        """relmse that the reference itself has: part of that between it and one of other random numbers, which has an eighth of the samples and so 8 times the noise."""
-        again = scene.with_name(scene.name.replace(".scene.json", ".again.exr"))
-        if not again.exists():
-            self.run("reference", scene, "-o", again, "--size", SIZE, "--spp", max(int(self.spp / fewer / 8), 16), "--seed", 1, "--terms", f"{SURFACES},{MEDIA}", "--quiet")
-        return lambda terms: f"{self.compare(again, reference, terms)[0] / 9:.3f}"
+def capture(bench, scene, label, *options, quality="high", size=SIZE):
+    return bench.capture(scene, f"vpl.{label}.exr", "--gi", "vpl", "--quality", quality, *options, size=size)
 
 
 def cloud(haze):
@@ -54,19 +39,17 @@ def cloud(haze):
 def errors_table(bench, content, wanted, frames):
     head = ["scene", "high, one frame: surfaces", "media", "picture", "ultra, frames", "surfaces", "media", "picture", "reference's own noise: surfaces", "media"]
     rows = []
-    for name, scene, fewer in [("cornell, no fog", load("content/cornell.scene.json"), 1), *scenes(content), ("cloud", cloud(False), 1 / 4), ("cloud in haze", cloud(True), 1 / 4)]:
-        if wanted and not any(w in name for w in wanted):
-            continue
-        print(name, file=sys.stderr)
+    candidates = [("cornell, no fog", load("content/cornell.scene.json"), 1), *scenes(content), ("cloud", cloud(False), 1 / 4), ("cloud in haze", cloud(True), 1 / 4)]
+    for name, scene, fewer in harness.chosen(candidates, wanted):
         path = bench.scene(name, scene)
         reference = bench.reference(path, fewer)
-        noise = bench.noise(path, reference, fewer)
-        one, _ = bench.picture(path, "one", "--frames", 2, size=FINE)
+        noise = lambda terms: f"{bench.noise(path, reference, fewer, terms):.3f}"
+        one, _ = capture(bench, path, "one", "--frames", 2, size=FINE)
         count = frames * LONGER.get(name, 1)
-        many, _ = bench.picture(path, "many", "--converge", "--frames", count, quality="ultra")
+        many, _ = capture(bench, path, "many", "--converge", "--frames", count, quality="ultra")
         fog = any("medium" in node for node in scene["nodes"])
         solid = "cloud" not in name
-        cells = lambda picture, *options: ["{:.3f}, {:.3f}".format(*bench.compare(picture, reference, terms, *options)) if there else "" for terms, there in ((SURFACES, solid), (MEDIA, fog), (None, True))]
+        cells = lambda picture, *options: [bench.errors(picture, reference, terms, *options) if there else "" for terms, there in ((SURFACES, solid), (MEDIA, fog), (None, True))]
         rows.append([name, *cells(one, "--reduce"), str(count), *cells(many), noise(SURFACES) if solid else "", noise(MEDIA) if fog else ""])
     return table(head, rows)
 
@@ -78,8 +61,8 @@ def costs_table(bench):
     width, height = map(int, SIZE.split("x"))
     rows = []
     for walks in WALKS:
-        _, report = bench.picture(path, f"cost{walks}", "--frames", 2, "--set", f"gi.vpl.walks={walks}", "--set", "gi.vpl.classes=8", "--set", "gi.vpl.keep=false",
-                                  "--set", "gi.vpl.compensation=clamped", "--set", "gi.vpl.samples=8")
+        _, report = capture(bench, path, f"cost{walks}", "--frames", 2, "--set", f"gi.vpl.walks={walks}", "--set", "gi.vpl.classes=8", "--set", "gi.vpl.keep=false",
+                            "--set", "gi.vpl.compensation=clamped", "--set", "gi.vpl.samples=8")
         lights = report["virtual_lights"]["gi.vpl"]
         surfaces, media = (milliseconds(report, name) for name in ("gi.vpl.surfaces", "gi.vpl.march"))
         squares = width * height / 4
@@ -98,13 +81,13 @@ def choice_table(bench, content):
         reference = bench.reference(path, fewer)
         base = ["--converge", "--frames", 8, "--set", "gi.vpl.march=quarter"]
         for n in CANDIDATES:
-            chosen, report = bench.picture(path, f"choice{n}", *base, "--set", f"gi.vpl.candidates={n}")
+            chosen, report = capture(bench, path, f"choice{n}", *base, "--set", f"gi.vpl.candidates={n}")
             gathered = sum(milliseconds(report, *names) for names in GATHERING)
             of = lambda key, r: r[key]["gi.vpl"]
             row = [name, str(n), str(of("virtual_lights", report)), f"{of('walks_ms', report):.1f}", f"{of('choice_ms', report):.0f}", f"{of('maps_ms', report):.0f}", f"{gathered:.0f}",
                    *(f"{bench.compare(chosen, reference, terms)[0]:.4f}" for terms in (SURFACES, MEDIA)), ""]
             if n <= 4:
-                every, report = bench.picture(path, f"every{n}", *base, "--set", f"gi.vpl.walks={256 * n}", "--set", "gi.vpl.candidates=1", "--set", "gi.vpl.classes=8")
+                every, report = capture(bench, path, f"every{n}", *base, "--set", f"gi.vpl.walks={256 * n}", "--set", "gi.vpl.candidates=1", "--set", "gi.vpl.classes=8")
                 total = sum(milliseconds(report, *names) for names in GATHERING) + of("walks_ms", report) + of("maps_ms", report)
                 row += [f"{total:.0f}", *(f"{bench.compare(every, reference, terms)[0]:.4f}" for terms in (SURFACES, MEDIA))]
             else:
@@ -114,17 +97,13 @@ def choice_table(bench, content):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--build", default=ROOT / "build/release", type=pathlib.Path)
-    parser.add_argument("--out", default=ROOT / "out/bench-lpv", type=pathlib.Path)
+    parser = harness.parser(__doc__, "vpl", 4096)
     parser.add_argument("--scenes", default="")
     parser.add_argument("--frames", default=32, type=int)
-    parser.add_argument("--spp", default=4096, type=int)
-    parser.add_argument("--page", default=ROOT / "docs/benchmarks-vpl.md", type=pathlib.Path)
     arguments = parser.parse_args()
-    content = pathlib.Path(os.environ.get("TYNDALL_CONTENT", ROOT.parent / "shared/content"))
-    bench = VplBench(arguments)
-    errors = errors_table(bench, content, [w for w in arguments.scenes.split(",") if w], arguments.frames)
+    content = harness.content_folder()
+    bench = harness.Bench(arguments)
+    errors = errors_table(bench, content, arguments.scenes, arguments.frames)
     costs, choice = costs_table(bench), choice_table(bench, content)
     arguments.page.write_text(f"""# Virtual point lights: error and time
 

@@ -6,16 +6,15 @@
 Scenes are those of lpv.py. Those that need the shared content ($TYNDALL_CONTENT, else ../shared/content) are left out with a note where it is missing.
 """
 
-import argparse
 import json
 import math
-import os
 import pathlib
 import sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).parent))
-from lpv import MEDIA, SIZE, SURFACES, Bench, cornell, smoke_room, sponza  # noqa: E402
-from tables import ROOT, commit_date, machine, table  # noqa: E402
+import harness  # noqa: E402
+from harness import MEDIA, SIZE, SURFACES, cornell, pair, smoke_room, sponza  # noqa: E402
+from tables import commit_date, machine, table  # noqa: E402
 
 FULL = {"surfaces.resolution": "full", "march": "full"}
 WALKS = [32, 64, 128, 256, 512, 1024, 2048]
@@ -23,14 +22,14 @@ CONNECTIONS = 256  # of a ray with 256 walks: one point that gathers all of them
 PAPER_LIGHTS = 1290  # in Sponza
 
 
-class Figures(Bench):
+class Figures(harness.Bench):
     def __init__(self, arguments):
         super().__init__(arguments)
         self.seeds = arguments.seeds
 
-    def capture(self, scene, label, settings, seed=0):
+    def frame(self, scene, label, settings, seed=0):
         """One frame: its file, and its report."""
-        path = scene.with_name(scene.name.replace(".scene.json", f".{label}.{seed}.exr"))
+        path = self.beside(scene, f"{label}.{seed}.exr")
         options = [o for key, value in {**FULL, **settings}.items() for o in ("--set", f"gi.vpl.{key}={value}")]
         common = ["--size", SIZE, "--gi", "vpl", "--quality", "high", "--seed", seed, "--quiet", *options]
         self.run("capture", scene, "-o", path, "--aov", "terms", "--report", path.with_suffix(".json"), *common)
@@ -42,17 +41,13 @@ class Figures(Bench):
         """relmse and energy for each of the receivers' terms: means over seeds. A picture of the first one, and of where it is off."""
         sums = [[0, 0] for _ in receivers]
         for seed in range(self.seeds):
-            path, _ = self.capture(scene, label, settings, seed)
+            path, _ = self.frame(scene, label, settings, seed)
             if seed == 0:
                 self.run("compare", path, reference, "--terms", receivers[-1], "--heatmap", path.with_suffix(".error.png"), "--heatmap-metric", "signed")
             for sum_, terms in zip(sums, receivers):
                 for i, value in enumerate(self.compare(path, reference, terms)):
                     sum_[i] += value / self.seeds
         return sums
-
-
-def pair(values):
-    return "{:.3f}, {:.3f}".format(*values)
 
 
 def bounds(figures, scene, reference):
@@ -65,7 +60,7 @@ def bounds(figures, scene, reference):
 
 def strategies(figures, scene, reference):
     """Noise of walks is most of one frame's: the second column has that of the points alone, against many points with the same walks."""
-    whole = [figures.capture(scene, "all", {"samples": 256, "classes": 4, "walks": 256}, seed)[0] for seed in range(figures.seeds)]
+    whole = [figures.frame(scene, "all", {"samples": 256, "classes": 4, "walks": 256}, seed)[0] for seed in range(figures.seeds)]
     rows = []
     for classes in (1, 2, 4, 8, 16, 32, 64):
         label = f"classes-{classes}"
@@ -91,7 +86,7 @@ def walks(figures, scene, reference):
 
 
 def paper_row(figures, name, scene, reference, settings):
-    _, report = figures.capture(scene, "paper", settings)
+    _, report = figures.frame(scene, "paper", settings)
     surfaces, media = figures.errors(scene, reference, "paper", settings, SURFACES, MEDIA)
     return [name, str(settings["walks"]), f"{report['virtual_lights']['gi.vpl']:.0f}", pair(surfaces), pair(media), f"{report['frame_ms']['median']:.0f}"]
 
@@ -100,7 +95,7 @@ def papers(figures, content):
     rows = []
     if (content / "sponza/Sponza.gltf").exists():
         scene = figures.scene("Sponza with fog", sponza(content, False))
-        _, report = figures.capture(scene, "search", {"walks": 256})
+        _, report = figures.frame(scene, "search", {"walks": 256})
         count = max(1, round(256 * PAPER_LIGHTS / report["virtual_lights"]["gi.vpl"]))
         rows.append(paper_row(figures, "Sponza with fog", scene, figures.reference(scene, 4), {"walks": count}))
     else:
@@ -112,14 +107,10 @@ def papers(figures, content):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--build", default=ROOT / "build/release", type=pathlib.Path)
-    parser.add_argument("--out", default=ROOT / "out/vpl-figures", type=pathlib.Path)
+    parser = harness.parser(__doc__, "vpl-figures", 4096, out="vpl-figures")
     parser.add_argument("--seeds", default=2, type=int)
-    parser.add_argument("--spp", default=4096, type=int)
-    parser.add_argument("--page", default=ROOT / "docs/benchmarks-vpl-figures.md", type=pathlib.Path)
     arguments = parser.parse_args()
-    content = pathlib.Path(os.environ.get("TYNDALL_CONTENT", ROOT.parent / "shared/content"))
+    content = harness.content_folder()
     figures = Figures(arguments)
     fog = figures.scene("cornell fog, τ 2", cornell(2))
     truth = figures.reference(fog, 1)

@@ -219,19 +219,6 @@ TEST_P(ShaderLibraryTest, NoPathLeavesTheFolder) {
     fs::remove(folder.parent_path() / "tyndall-outside.comp");
 }
 
-TEST_P(ShaderLibraryTest, PrefetchedProgramsAreTheSameAsOthers) {
-    write("a.comp", kShader);
-    write("lib/value.glsl", "float value() { return float(LEVEL); }\n");
-    ShaderLibrary lib = library();
-    std::vector<ProgramRequest> requests;
-    for (int32_t level = 0; level < 4; ++level)
-        requests.push_back({{"a.comp"}, {{"LEVEL", level}}});
-    lib.prefetch(requests);
-    EXPECT_EQ(lib.programCount(), 4u);
-    for (int32_t level = 0; level < 4; ++level)
-        EXPECT_EQ(run(*lib.program(requests[size_t(level)]).value()), float(level));
-}
-
 /// A shader that no variant names would never be compiled by a test.
 TEST(EngineShaders, AreAllInTheListOfVariants) {
     const ShaderLibrary lib;

@@ -103,6 +103,24 @@ TEST_P(TextureTest, ARegionIsWrittenAlone) {
 }
 
 /// The mean of a 2×2 block, by definition of a box filter on a square power of two.
+TEST_P(TextureTest, ABoxOfTexelsIsCopiedAlone) {
+    Texture source("source", {GL_TEXTURE_3D, GL_R32F, 4, 3, 3, 1});
+    const std::vector<float> values = ramp(36, 1);
+    source.write(values.data(), values.size() * 4);
+    Texture copy("copy", {GL_TEXTURE_3D, GL_R32F, 2, 5, 4, 1});
+    copy.clear(-1);
+    copy.copyFrom(source, {0, 1, 0, 2, 2, 3, 1}, 0, 2, 3);
+    const std::vector<float> texels = readFloats(copy);
+    for (int z = 0; z < 4; ++z)
+        for (int y = 0; y < 5; ++y)
+            for (int x = 0; x < 2; ++x) {
+                const bool copied = z == 3 && y >= 2;
+                const float expected = copied ? float((2 * 3 + y - 2) * 4 + x + 1) : -1.0f;
+                EXPECT_EQ(texels[size_t((z * 5 + y) * 2 + x)], expected) << x << y << z;
+            }
+    EXPECT_THROW(copy.copyFrom(source, {0, 1, 0, 2, 2, 3, 1}, 0, 3, 3), CheckFailure);
+}
+
 TEST_P(TextureTest, MipsAreMeans) {
     Texture texture("mips", {.internalFormat = GL_R32F, .width = 4, .height = 4, .mips = 3});
     const std::vector<float> values = ramp(16, 1.0f);

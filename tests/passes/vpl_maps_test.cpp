@@ -10,7 +10,7 @@
 #include "gl/shader_library.h"
 #include "support/content.h"
 #include "support/render.h"
-#include "volumetric_gi/vpl/traced_scene.h"
+#include "volumetric_gi/shared/traced_scene.h"
 #include "volumetric_gi/vpl/vpl_maps.h"
 #include "volumetric_gi/vpl/vpl_points.h"
 
@@ -77,7 +77,7 @@ public:
         bind(GL_UNIFORM_BUFFER, "Vpl", vpl);
         bind(GL_UNIFORM_BUFFER, "Points", points);
         bind(GL_SHADER_STORAGE_BUFFER, "VplPlaces", places);
-        bind(GL_SHADER_STORAGE_BUFFER, "VplTriangles", triangles);
+        bind(GL_SHADER_STORAGE_BUFFER, "TracedTriangles", triangles);
         bind(GL_SHADER_STORAGE_BUFFER, "VplPoints", all);
         bind(GL_SHADER_STORAGE_BUFFER, "VplMaps", maps);
         glDispatchCompute(params.lightCount, 1, 1);
@@ -89,7 +89,7 @@ public:
     [[nodiscard]] size_t lightCount() const { return lights_.lights.size(); }
     [[nodiscard]] const std::vector<uint32_t>& rays() const { return rays_; }
     [[nodiscard]] bool samePlane(uint32_t one, uint32_t other) const {
-        if (one == gpu::kVplNothing || other == gpu::kVplNothing) return one == other;
+        if (one == gpu::kNoTriangle || other == gpu::kNoTriangle) return one == other;
         return glm::all(
             glm::lessThan(glm::abs(triangles_[one].plane - triangles_[other].plane), vec4(1e-3f)));
     }
@@ -120,7 +120,7 @@ public:
 private:
     Scene scene_;
     std::unique_ptr<tracing::SurfaceScene> surfaces_;
-    std::vector<gpu::VplTriangle> triangles_;
+    std::vector<gpu::TracedTriangle> triangles_;
     VplSet lights_;
     std::vector<uint32_t> rays_;
 };
@@ -141,18 +141,18 @@ TEST_P(VplMaps, PointsShowWhatRaysMeet) {
                                point = splatted[light * kStride + size_t(y) * kSide + size_t(x)];
                 ++all;
                 same += maps.samePlane(ray, point);
-                if (ray != gpu::kVplNothing) {
+                if (ray != gpu::kNoTriangle) {
                     ++seen;
-                    holes += point == gpu::kVplNothing;
+                    holes += point == gpu::kNoTriangle;
                 }
                 if (x < 3 || y < 3 || x >= int(kSide) - 3 || y >= int(kSide) - 3) continue;
-                if (ray != gpu::kVplNothing && maps.plain(light, x, y, 1)) {
+                if (ray != gpu::kNoTriangle && maps.plain(light, x, y, 1)) {
                     ++plain;
                     wrong += !maps.samePlane(ray, point);
                 }
-                if (ray == gpu::kVplNothing && maps.plain(light, x, y, 3)) {
+                if (ray == gpu::kNoTriangle && maps.plain(light, x, y, 3)) {
                     ++open;
-                    filled += point != gpu::kVplNothing;
+                    filled += point != gpu::kNoTriangle;
                 }
             }
         const float reach = std::bit_cast<float>(splatted[light * kStride + kTexels]);

@@ -73,7 +73,7 @@ TEST(VplIncremental, MediaThatMoveALittleNeitherTraceNorMap) {
         scene.versions.media = scene.media[0].version = nextVersion();
         const Rendered now = kept.render(scene, options);
         EXPECT_EQ(now.statistics.at("walks_traced.gi.vpl"), 0);
-        for (const char* pass : {"gi.vpl.maps", "gi.vpl.walks", "gi.vpl.triangles", "gi.vpl.tree"})
+        for (const char* pass : {"gi.vpl.maps", "gi.vpl.walks", "gi.traced.triangles", "gi.traced.tree"})
             EXPECT_EQ(stateOf(now, pass), "cached") << pass;
         EXPECT_NE(stateOf(now, "gi.vpl.lights"), "cached");
         TestRenderer fresh;

@@ -48,7 +48,7 @@ TEST(Vpl, WhereNothingChangesNothingIsMadeAnew) {
     const Scene scene = sceneFromJson(corner(50, kFog));
     sharedRenderer().render(scene, options);
     const Rendered again = sharedRenderer().render(scene, options);
-    for (const char* pass : {"gi.vpl.lights", "gi.vpl.walks", "gi.vpl.maps", "gi.vpl.triangles"})
+    for (const char* pass : {"gi.vpl.lights", "gi.vpl.walks", "gi.vpl.maps", "gi.traced.triangles"})
         EXPECT_EQ(again.passes.at(pass).substr(0, 6), "cached") << pass;
 }
 

@@ -1,4 +1,4 @@
-// Two path tracers, one that aims and weighs, one that only follows: their pictures differ by their noise alone.
+// Two path tracers, one with next-event estimation and MIS, one that only follows paths: their pictures differ by their noise alone.
 
 #include <cmath>
 #include <gtest/gtest.h>

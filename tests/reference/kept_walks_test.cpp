@@ -53,21 +53,21 @@ tracing::TracerScene traced(const Scene& scene) {
     return std::move(*result);
 }
 
-/// Walks through guessed media, carrying what they carry in the true ones.
+/// Walks through proxy media, carrying what they carry in the true ones.
 class Kept {
 public:
     explicit Kept(const Scene& scene)
-        : guessed_(tracing::makeProxyMedia(scene, dvec3(0))), truth_(scene, dvec3(0)) {
+        : proxy_(tracing::makeProxyMedia(scene, dvec3(0))), truth_(scene, dvec3(0)) {
         traced_ = traced(scene);
         // Lights know the media that glow.
         traced_.lights.reset();
-        *traced_.media = std::move(guessed_.field);
+        *traced_.media = std::move(proxy_.field);
         traced_.lights =
             std::make_unique<tracing::Lights>(scene, dvec3(0), *traced_.surfaces, *traced_.media);
         emission_.emplace(traced_);
         walker_.emplace(traced_, *emission_, tracing::WalkSettings{});
     }
-    [[nodiscard]] uint64_t hash() const { return guessed_.hash; }
+    [[nodiscard]] uint64_t hash() const { return proxy_.hash; }
     void trace(tracing::Sampler& sampler, std::vector<tracing::WalkVertex>& walk) {
         walker_->trace(sampler, walk);
     }
@@ -76,7 +76,7 @@ public:
     }
 
 private:
-    tracing::ProxyMedia guessed_;
+    tracing::ProxyMedia proxy_;
     tracing::MediaField truth_;
     tracing::TracerScene traced_;
     std::optional<tracing::LightEmission> emission_;

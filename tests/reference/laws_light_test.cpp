@@ -89,8 +89,8 @@ TEST_P(ReferenceAiming, NotAtAllFromCollisionsAndFromSegmentsTooFindsTheSameLigh
     const auto [lamp, name] = GetParam();
     const auto stage = room(lamp);
     reference::PathSettings none, collisions, ratio;
-    none.aimAtLights = false;
-    collisions.aimFromSegments = false;
+    none.nextEventEstimation = false;
+    collisions.nextEventFromSegments = false;
     ratio.transmittance = tracing::TransmittanceMode::Ratio;
     const dvec3 eye(0.2, 0.5, 4), to(0, -0.4, 0);
     const Probe full = gaze(stage, eye, to, 0.8);
@@ -150,7 +150,7 @@ TEST(ReferenceLaws, AGlowingBoxLightsAWideFloorByAimingAsMuchAsByChance) {
         addLamp(maker, Lamp::Triangles);
         const auto stage = Stage::make(maker.take());
         reference::PathSettings none;
-        none.aimAtLights = false;
+        none.nextEventEstimation = false;
         expectSameLight(gaze(stage, {0.2, 0.5, 4}, {0, -1.6, 0}, 0.3),
                         gaze(stage, {0.2, 0.5, 4}, {0, -1.6, 0}, 0.3, 1, none),
                         uint64_t(850 + width), "a floor of " + std::to_string(width) + " m");
@@ -171,7 +171,7 @@ TEST(ReferenceLaws, AConstantSkyThroughOverlappingColoursIsTheSameAimedAtOrNot) 
     maker.scene().environment.radiance = {1, 1, 1};
     const auto stage = Stage::make(maker.take());
     reference::PathSettings none;
-    none.aimAtLights = false;
+    none.nextEventEstimation = false;
     for (const int channel : {0, 1, 2})
         expectSameLight(gaze(stage, {0, 0, 4}, dvec3(0), 1, channel),
                         gaze(stage, {0, 0, 4}, dvec3(0), 1, channel, none), uint64_t(870 + channel),

@@ -12,7 +12,7 @@ namespace tyndall::validation {
 namespace {
 
 using tracing::EnvironmentSource;
-using tracing::LightSample;
+using tracing::LampSample;
 using tracing::LightSource;
 using tracing::Sampler;
 
@@ -30,12 +30,12 @@ double irradiance(const LightSource& light, const dvec3& from, const dvec3& norm
     constexpr uint32_t kSamples = 40000;
     for (uint32_t i = 0; i < kSamples; ++i) {
         Sampler sampler(4, 0, i);
-        const LightSample sample = light.sample(from, sampler.next2());
+        const LampSample sample = light.sample(from, sampler.next2());
         if (!(sample.density > 0)) continue;
         sum += sample.radiance.y * std::max(0.0, glm::dot(sample.direction, normal)) /
                sample.density / kSamples;
         if (light.delta() || i % 16 != 0) continue;
-        const LightSample met = light.meet({from, sample.direction});
+        const LampSample met = light.meet({from, sample.direction});
         // A ray to the very edge may miss by a rounding.
         if (!(met.density > 0)) continue;
         EXPECT_NEAR(met.density, sample.density, 1e-6 * sample.density);
@@ -116,9 +116,8 @@ TEST(ReferenceEnvironment, DirectionsAreDrawnAsTheDensitySaysAndItAddsUpToOne) {
         ASSERT_GT(sample.density, 0);
         const dvec3 any = tracing::directionAround(1 - 2 * sampler.random(), sampler.random());
         total += source.density(any) * 4 * kPi / kDrawn;
-        EXPECT_EQ(tracing::maximumOf(source.radiance(any)) > 0 && !(source.density(any) > 0),
-                  false)
-            << "light that is never aimed at";
+        EXPECT_EQ(tracing::maximumOf(source.radiance(any)) > 0 && !(source.density(any) > 0), false)
+            << "light that is never sampled";
     }
     EXPECT_NEAR(total, 1, 0.03);
     // The density has steps that 24 midpoints a bin see to some 10⁻³: they add a little to χ².

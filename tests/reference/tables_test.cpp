@@ -9,7 +9,7 @@
 namespace tyndall::validation {
 namespace {
 
-// A short run: a hundred seconds on two cores. Rows that do not reach the aimed error say which one they reach.
+// A short run: a hundred seconds on two cores. Rows that do not reach the wanted error say which one they reach.
 constexpr size_t kStride = 17;
 constexpr double kSegments = 1.2e6;
 

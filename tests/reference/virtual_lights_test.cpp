@@ -1,4 +1,4 @@
-// Light as it leaves its sources, the walks that it goes on, and the bound that virtual point lights are held at.
+// Light as it leaves its sources, the walks that it goes on, and what virtual point lights are clamped to.
 
 #include <cmath>
 
@@ -119,7 +119,7 @@ TEST(LightEmission, PowerIsItsClosedForm) {
     EXPECT_NEAR(glow.value.y, sides * kPi * 22, 4 * glow.error + 1e-6);
 }
 
-TEST(LightEmission, AimingChangesNoPower) {
+TEST(LightEmission, SamplingTowardsContentChangesNoPower) {
     const dvec3 down(0.3, -1, 0.2);
     Light sun;
     sun.color = {1, 1, 1};
@@ -192,14 +192,14 @@ TEST(LightWalker, AimingAtTheContentChangesNoLight) {
     auto traced = tracing::TracerScene::build(scene, dvec3(0), 1);
     ASSERT_TRUE(traced.ok()) << traced.message();
     const Mean plain = scatteredInto(*traced, around, {}),
-               aimed = scatteredInto(*traced, around, around);
-    const double error = std::hypot(plain.error, aimed.error);
-    printf("%.5f W, aimed %+.2f standard errors; errors %.2f %%, %.2f %%\n", plain.value.x,
-           (aimed.value.x - plain.value.x) / error, 100 * plain.error / plain.value.x,
-           100 * aimed.error / aimed.value.x);
-    EXPECT_LE(std::abs(aimed.value.x - plain.value.x), 3 * error);
+               directed = scatteredInto(*traced, around, around);
+    const double error = std::hypot(plain.error, directed.error);
+    printf("%.5f W, directed %+.2f standard errors; errors %.2f %%, %.2f %%\n", plain.value.x,
+           (directed.value.x - plain.value.x) / error, 100 * plain.error / plain.value.x,
+           100 * directed.error / directed.value.x);
+    EXPECT_LE(std::abs(directed.value.x - plain.value.x), 3 * error);
     EXPECT_LT(error, 0.05 * plain.value.x) << "too coarse to tell anything";
-    EXPECT_LT(aimed.error, 0.7 * plain.error) << "not aimed at all";
+    EXPECT_LT(directed.error, 0.7 * plain.error) << "not sampled towards it at all";
 }
 
 TEST(InstantRadiosity, TheMeanIsTheSameForEveryBound) {

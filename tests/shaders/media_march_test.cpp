@@ -34,7 +34,7 @@ gpu::LightData lamp(uint32_t type) {
     light.type = type;
     light.intensity = vec4(1, 1, 1, 1e-6f);
     light.direction = vec4(0, -1, 0, 0);
-    light.shadowIndex = light.opticalDepthIndex = -1;
+    light.shadowIndex = -1;
     light.axisY.w = -1;
     return light;
 }

@@ -1,4 +1,5 @@
 // The media's passes in a frame graph: pictures against double precision, what is kept, what is skipped and why.
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <functional>
@@ -113,7 +114,7 @@ protected:
         addLight(light);
     }
     void addLight(gpu::LightData light) {
-        light.shadowIndex = light.opticalDepthIndex = -1;
+        light.shadowIndex = -1;
         lights.push_back(light);
     }
 
@@ -269,6 +270,24 @@ TEST_P(MediaPasses, LightVolumesAreKeptUntilSomethingChanges) {
     scene.versions.transforms = nextVersion();
     EXPECT_EQ(render(scene, 16, 12).opticalDepth, fg::PassStatus::Ran);
     EXPECT_EQ(render(scene, 16, 12).opticalDepth, fg::PassStatus::Cached);
+}
+
+TEST_P(MediaPasses, AGridOfTheSameShapeIsSeenAtOnce) {
+    Scene scene = sceneWith({puff()}, {dmat4(1.0)});
+    addSun(vec3(0, -1, 0));
+    const Picture one = render(scene, 16, 12);
+    const Version version = system->version();
+    // The same bricks with the same bounds; in each the samples lie the other way round.
+    auto other = std::make_shared<BrickGrid>(*scene.media[0].density);
+    for (auto first = other->samples.begin(); first != other->samples.end();
+         first += kBrickSampleCount)
+        std::reverse(first, first + kBrickSampleCount);
+    scene.media[0].density = other;
+    scene.versions.media = nextVersion();
+    const Picture two = render(scene, 16, 12);
+    EXPECT_NE(system->version(), version);
+    EXPECT_EQ(two.opticalDepth, fg::PassStatus::Ran);
+    EXPECT_NE(one.transmittance.pixels, two.transmittance.pixels);
 }
 
 TEST_P(MediaPasses, ReducedResolutionsAreCloseAndTransmittanceIsNot) {

@@ -6,7 +6,6 @@
 #include <limits>
 #include <utility>
 
-#include "media/brick_pyramid.h"
 #include "media/sparse_voxels.h"
 #include "media_dense_field.h"
 #include "support/content.h"
@@ -227,48 +226,6 @@ TEST(SparseVoxels, RepairsAndCountsWhatIsNoDensity) {
     for (int x = 0; x < 8; ++x) EXPECT_EQ(grid->sample({x, 0, 0}), expected[x]) << x;
     EXPECT_EQ(grid->minimum, 0.0f);
 }
-
-TEST(BrickPyramid, BoundsAreThoseOfTheVoxelsAtEveryLevel) {
-    Draw draw(test::seed() + 3);
-    const DenseField field = randomField(draw, {2, 2, 2}, {61, 21, 9}, 0.9);
-    const BrickGrid grid = bricksOf(field);
-    const BrickPyramid pyramid(grid);
-    ASSERT_EQ(pyramid.levelCount(), 4); // 8, 4, 2, 1 cells along x
-    EXPECT_EQ(pyramid.size(3), ivec3(1));
-    for (int level = 0; level < pyramid.levelCount(); ++level) {
-        const int edge = BrickPyramid::cellEdge(level);
-        const ivec3 size = pyramid.size(level);
-        for (int z = 0; z < size.z; ++z)
-            for (int y = 0; y < size.y; ++y)
-                for (int x = 0; x < size.x; ++x) {
-                    const ivec3 low = grid.origin + edge * ivec3(x, y, z);
-                    const auto [minimum, maximum] =
-                        voxelRange(field, low, low + edge); // conservative and attained
-                    EXPECT_EQ(double(pyramid.cell(level, {x, y, z}).minimum), minimum) << level;
-                    EXPECT_EQ(double(pyramid.cell(level, {x, y, z}).maximum), maximum) << level;
-                }
-    }
-}
-
-TEST(BrickPyramid, NoSampleOfTheFieldLeavesItsBounds) {
-    Draw draw(test::seed() + 4);
-    const DenseField field = randomField(draw, {0, 0, 0}, {40, 33, 27}, 0.4);
-    const BrickGrid grid = bricksOf(field);
-    const BrickPyramid pyramid(grid);
-    for (int i = 0; i < 20000; ++i) {
-        const dvec3 relative = dvec3(draw.uniform(), draw.uniform(), draw.uniform()) *
-                               dvec3(grid.brickCount * kBrickCells);
-        const double value = grid.sample(dvec3(grid.origin) + relative);
-        for (int level = 0; level < pyramid.levelCount(); ++level) {
-            const PyramidCell& cell =
-                pyramid.cell(level, ivec3(relative / double(BrickPyramid::cellEdge(level))));
-            ASSERT_LE(value, double(cell.maximum) * (1 + 1e-12));
-            ASSERT_GE(value, double(cell.minimum) * (1 - 1e-12));
-        }
-    }
-}
-
-TEST(BrickPyramid, OfNothingIsEmpty) { EXPECT_EQ(BrickPyramid(BrickGrid{}).levelCount(), 0); }
 
 } // namespace
 } // namespace tyndall

@@ -319,7 +319,8 @@ TEST(ParticleGrids, AMillionParticlesTakeSeconds) {
     const Result<ParticleSet> cloud = generateParticles("cloud", 1'000'000, 1, 100);
     ASSERT_TRUE(cloud.ok());
     const ParticleGrids grids = gridsOf(*cloud);
-    EXPECT_LT(voxelOf(*grids.density), 0.6); // a quarter of 2.1 m, and a little more for want of room
+    EXPECT_LT(voxelOf(*grids.density),
+              0.6); // a quarter of 2.1 m, and a little more for want of room
     EXPECT_LT(grids.density->samples.size() * sizeof(float), size_t(160) << 20);
     EXPECT_NEAR(matterOf(*grids.density) / matterOf(*cloud), 1, 0.001);
 }

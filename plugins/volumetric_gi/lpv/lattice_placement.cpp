@@ -1,10 +1,9 @@
 #include "volumetric_gi/lpv/lattice_placement.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 
-#include "framegraph/hash.h"
+#include "plugin/cache_key.h"
 #include "volumetric_gi/lpv/lattice_params.h"
 
 namespace tyndall::volumetric_gi {
@@ -66,11 +65,7 @@ LatticeLevel placeLevel(const PlacementRequest& request, double cell, const Latt
     level.params = latticeParams(size, 0, vec3(lowest), float(cell));
     level.params.grid.place.z = goesOn;
     level.cells = uint64_t(size.x) * uint64_t(size.y) * uint64_t(size.z);
-    level.key = level.cells;
-    for (int i = 0; i < 4; ++i) {
-        level.key = fg::mixHash(level.key, std::bit_cast<uint32_t>(level.params.grid.lowest[i]));
-        level.key = fg::mixHash(level.key, uint64_t(level.params.grid.size[i]));
-    }
+    level.key = cacheKey(level.params.grid.lowest, level.params.grid.size);
     return level;
 }
 

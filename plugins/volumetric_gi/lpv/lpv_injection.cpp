@@ -20,15 +20,12 @@ void recordInject(const InjectData& data, fg::PassContext& context) {
     bindView(command, data.view);
     command.bind("Lights", data.lights.lights);
     if (media) bindMedia(command, data.media);
-    command.params(data.injection.params)
+    bindGBuffer(command, data.surfaces)
+        .params(data.injection.params)
         .params(data.injection.inject, "Inject")
         .bind("LpvMedium", data.injection.medium)
         .bind("LpvLinks", data.injection.links)
         .bind("LpvDeposits", data.injection.deposits)
-        .bind("rsmDepth", data.surfaces.depth)
-        .bind("rsmNormal", data.surfaces.normal)
-        .bind("rsmBase", data.surfaces.base)
-        .bind("rsmMaterial", data.surfaces.material)
         .dispatchOver(uint32_t(data.view.width), uint32_t(data.view.height));
 }
 
@@ -75,10 +72,7 @@ fg::BufferHandle addInjection(fg::FrameGraph& graph, const plugin::FrameInputs& 
                 data.lights.lights = builder.read(inputs.lights.lights);
                 data.media = inputs.media;
                 if (inputs.media.count > 0) data.media = readMedia(builder, inputs.media);
-                data.surfaces.depth = builder.read(rsm.surfaces.depth);
-                data.surfaces.normal = builder.read(rsm.surfaces.normal);
-                data.surfaces.base = builder.read(rsm.surfaces.base);
-                data.surfaces.material = builder.read(rsm.surfaces.material);
+                data.surfaces = readGBuffer(builder, rsm.surfaces);
                 data.injection = injection;
                 data.injection.inject.light = rsm.from.light;
                 data.injection.inject.share = rsm.from.share;

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "framegraph/hash.h"
+#include "plugin/cache_key.h"
 #include "volumetric_gi/lpv/lattice_params.h"
 
 namespace tyndall::volumetric_gi {
@@ -50,7 +50,7 @@ fg::BufferHandle addLatticeMedium(fg::FrameGraph& graph, const plugin::FrameInpu
                     builder.create("gi.lpv.medium", fg::BufferDesc{level.cells * sizeof(vec4) *
                                                                    gpu::kLpvMediumVectors});
                 data.params = level.params;
-                builder.cacheBy(fg::mixHash(level.key, inputs.scene.media));
+                builder.cacheBy(cacheKey(level.key, inputs.scene.media));
             },
             [](const Data& data, fg::PassContext& context) {
                 auto command =
@@ -81,7 +81,7 @@ fg::BufferHandle addLatticeLinks(fg::FrameGraph& graph, const plugin::FrameInput
                                                                   gpu::kLpvLinkPlanes});
                 data.surfaces = inputs.surfaces;
                 data.params = level.params;
-                builder.cacheBy(fg::mixHash(level.key, inputs.scene.geometry));
+                builder.cacheBy(cacheKey(level.key, inputs.scene.geometry));
             },
             [](const Data& data, fg::PassContext& context) {
                 context.clearBuffer(data.links, 0);

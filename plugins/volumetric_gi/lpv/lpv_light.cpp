@@ -1,5 +1,7 @@
 #include "volumetric_gi/lpv/lpv_light.h"
 
+#include "plugin/reduced_march.h"
+
 namespace tyndall::volumetric_gi {
 namespace {
 
@@ -23,59 +25,45 @@ LatticeLight writeLight(fg::Builder& builder, const LatticeLight& light) {
             builder.write(light.sides)};
 }
 
-/// Light that media scatter to the eye: one ray for a square of `pixels` a side or, where there are `rays` of such squares, from them to every pixel.
+constexpr LightMarchNames kMarchNames{"gi.lpv.march", "gi.lpv.upsample",
+                                      "", // which marches what no ray fits
+                                      "gi.lpv.coarse.inScatter", "gi.lpv.inScatter"};
+
+/// Light that media scatter to the eye.
 fg::TextureHandle addMarch(fg::FrameGraph& graph, const plugin::FrameInputs& inputs,
                            const gpu::LpvLevels& levels, const LatticeLight& light, int pixels,
-                           fg::TextureHandle rays) {
+                           MarchStage stage, fg::TextureHandle before) {
     struct Data {
-        ViewResources view;
-        MediaResources media;
+        LightMarch march;
         LatticeLight light;
-        fg::TextureHandle depth, transmittance, rays, inScatter;
         gpu::LpvLevels levels;
-        gpu::MarchParams params;
     };
-    const bool upsampled = bool(rays);
-    const int factor = upsampled ? 1 : pixels;
     return graph
         .addPass<Data>(
-            upsampled ? "gi.lpv.upsample" : "gi.lpv.march",
+            kMarchNames.of(stage),
             [&](fg::Builder& builder, Data& data) {
                 if (inputs.media.count == 0 || !inputs.transmittance)
                     return builder.skip("no medium in view");
-                data.view = inputs.view;
-                data.media = readMedia(builder, inputs.media);
-                data.depth = builder.read(inputs.gbuffer.depth);
+                gpu::MarchParams params = inputs.march;
+                params.factor = uint32_t(pixels);
+                const MarchPass pass = readMarch(builder, stage, inputs.view, inputs.media,
+                                                 inputs.gbuffer.depth, params);
+                data.march =
+                    declareLightMarch(builder, pass, inputs.transmittance, before, kMarchNames);
                 data.light = readLight(builder, light);
-                if (upsampled) {
-                    data.transmittance = builder.read(inputs.transmittance);
-                    data.rays = builder.read(rays);
-                }
-                data.inScatter = builder.create(
-                    factor == 1 ? "gi.lpv.inScatter" : "gi.lpv.coarse.inScatter",
-                    fg::texture2D(fg::Format::RGBA32F, (inputs.view.width + factor - 1) / factor,
-                                  (inputs.view.height + factor - 1) / factor));
                 data.levels = levels;
-                data.params = inputs.march;
-                data.params.factor = uint32_t(pixels);
             },
             [](const Data& data, fg::PassContext& context) {
-                auto command =
-                    context.compute(data.rays ? "gi/lpv/upsample.comp" : "gi/lpv/march.comp",
-                                    {{"PHASE_GROUPS", int32_t(data.media.phaseGroups)},
-                                     {"MEDIA_KINDS", mediaKinds(data.media, false)}});
-                bindView(command, data.view);
-                bindMedia(command, data.media);
-                bindLight(command, data.light, data.levels)
-                    .params(data.params)
-                    .bind("depth", data.depth)
-                    .bind("inScatter", data.inScatter);
-                if (data.rays)
-                    command.bind("transmittance", data.transmittance)
-                        .bind("coarseInScatter", data.rays);
-                command.dispatchOver(data.inScatter);
+                const MarchPass& pass = data.march.pass;
+                auto command = context.compute(
+                    pass.stage == MarchStage::Spread ? "gi/lpv/upsample.comp" : "gi/lpv/march.comp",
+                    {{"PHASE_GROUPS", int32_t(pass.media.phaseGroups)},
+                     {"MEDIA_KINDS", mediaKinds(pass.media, false)}});
+                bindMedia(command, pass.media);
+                bindLight(command, data.light, data.levels);
+                bindLightMarch(command, data.march).dispatchOver(data.march.light);
             })
-        .inScatter;
+        .march.light;
 }
 
 } // namespace
@@ -139,10 +127,7 @@ fg::TextureHandle addSurfaceLookup(fg::FrameGraph& graph, const plugin::FrameInp
             "gi.lpv.surfaces",
             [&](fg::Builder& builder, Data& data) {
                 data.view = inputs.view;
-                data.gbuffer.depth = builder.read(inputs.gbuffer.depth);
-                data.gbuffer.normal = builder.read(inputs.gbuffer.normal);
-                data.gbuffer.base = builder.read(inputs.gbuffer.base);
-                data.gbuffer.material = builder.read(inputs.gbuffer.material);
+                data.gbuffer = readGBuffer(builder, inputs.gbuffer);
                 data.light = readLight(builder, light);
                 data.radiance = builder.create(
                     "gi.lpv.surfaceRadiance",
@@ -152,11 +137,8 @@ fg::TextureHandle addSurfaceLookup(fg::FrameGraph& graph, const plugin::FrameInp
             [](const Data& data, fg::PassContext& context) {
                 auto command = context.compute("gi/lpv/surfaces.comp");
                 bindView(command, data.view);
+                bindGBuffer(command, data.gbuffer);
                 bindLight(command, data.light, data.levels)
-                    .bind("gbufferDepth", data.gbuffer.depth)
-                    .bind("gbufferNormal", data.gbuffer.normal)
-                    .bind("gbufferBase", data.gbuffer.base)
-                    .bind("gbufferMaterial", data.gbuffer.material)
                     .bind("surfaceRadiance", data.radiance)
                     .dispatchOver(data.radiance);
             })
@@ -166,8 +148,10 @@ fg::TextureHandle addSurfaceLookup(fg::FrameGraph& graph, const plugin::FrameInp
 fg::TextureHandle addMediumLookup(fg::FrameGraph& graph, const plugin::FrameInputs& inputs,
                                   const gpu::LpvLevels& levels, const LatticeLight& light,
                                   int pixels) {
-    const fg::TextureHandle rays = addMarch(graph, inputs, levels, light, pixels, {});
-    return !rays || pixels == 1 ? rays : addMarch(graph, inputs, levels, light, pixels, rays);
+    return addMarchStages<fg::TextureHandle>(
+        pixels, false, [&](MarchStage stage, fg::TextureHandle before) {
+            return addMarch(graph, inputs, levels, light, pixels, stage, before);
+        });
 }
 
 } // namespace tyndall::volumetric_gi

@@ -1,11 +1,10 @@
 #include "volumetric_gi/lpv/lpv_technique.h"
 
-#include <bit>
 #include <cstddef>
 #include <string>
 #include <utility>
 
-#include "framegraph/hash.h"
+#include "plugin/cache_key.h"
 #include "volumetric_gi/lpv/lpv_injection.h"
 #include "volumetric_gi/lpv/lpv_printed.h"
 #include "volumetric_gi/lpv/lpv_show.h"
@@ -68,22 +67,10 @@ gpu::LpvInjectParams injectParams(const dvec3& power) {
 
 /// Of everything that a lattice's light follows from, and of the coarser ones' (`place`: the keys of these and of its own place).
 uint64_t LpvTechnique::sourceKey(const plugin::FrameInputs& inputs, uint64_t place) const {
-    uint64_t key = fg::mixHash(place, inputs.scene.geometry);
-    for (const uint64_t version :
-         {inputs.scene.materials, inputs.scene.media, uint64_t(settings_.rsmSize),
-          uint64_t(settings_.rsmLights), uint64_t(settings_.rsmRectPoints),
-          uint64_t(settings_.reflected), uint64_t(settings_.scattered),
-          uint64_t(std::bit_cast<uint32_t>(settings_.tolerance))})
-        key = fg::mixHash(key, version);
-    for (uint32_t i = 0; i < inputs.lights.lightCount; ++i) {
-        // But for what the direct passes alone look at, which changes from frame to frame: a frame's own point on the light, and
-        // where its shadows and optical depths lie.
-        gpu::LightData light = inputs.lightData[i];
-        light.samplePoint = vec4(0);
-        light.shadowIndex = light.opticalDepthIndex = 0;
-        key = fg::hashName({reinterpret_cast<const char*>(&light), sizeof(light)}, key);
-    }
-    return key;
+    return cacheKey(place, inputs.scene.geometry, inputs.scene.materials, inputs.scene.media,
+                    settings_.rsmSize, settings_.rsmLights, settings_.rsmRectPoints,
+                    settings_.reflected, settings_.scattered, settings_.tolerance,
+                    lightsKey({inputs.lightData, inputs.lights.lightCount}));
 }
 
 void LpvTechnique::addSources(fg::FrameGraph& graph, const plugin::FrameInputs& inputs,
@@ -169,7 +156,7 @@ LatticeLight LpvTechnique::addLight(fg::FrameGraph& graph, const plugin::FrameIn
     for (size_t i = 0; i < lattices.size(); ++i) {
         Lattice& lattice = lattices[i];
         const Lattice* outer = i > 0 ? &lattices[i - 1] : nullptr;
-        place = fg::mixHash(place, lattice.level.key);
+        place = cacheKey(place, lattice.level.key);
         const uint64_t key = sourceKey(inputs, place);
         if (outer) lattice.sources = addInflow(graph, lattice, *outer);
         // Light goes on from where the last frame left it only where nothing has changed since: a picture never shows what was.

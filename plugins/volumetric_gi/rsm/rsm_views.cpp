@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "scene/light_flux.h"
+
 namespace tyndall::volumetric_gi {
 namespace {
 
@@ -10,17 +12,18 @@ constexpr double kWidestSpot = 1.2; // radians from its axis; a wider one gets a
 
 dvec3 rgb(const vec4& v) { return dvec3(v.x, v.y, v.z); }
 
-/// Watts that reach `box`, at most.
+/// Watts that leave the light through its views of `box`.
 dvec3 powerOf(const gpu::LightData& light, const Bounds& box) {
     const dvec3 intensity = rgb(light.intensity);
     switch (light.type) {
     case gpu::kLightDirectional: {
+        // Its view is a square around the box's ball, whatever the direction.
         const double side = glm::length(box.extent());
-        return intensity * side * side;
+        return parallelFlux(intensity, side * side);
     }
-    case gpu::kLightSpot: return intensity * 2.0 * kPi * (1 - double(light.axisY.w));
-    case gpu::kLightRect: return intensity * kPi * double(light.intensity.w);
-    default: return intensity * 4.0 * kPi;
+    case gpu::kLightSpot: return spotFlux(intensity, double(light.axisX.w), double(light.axisY.w));
+    case gpu::kLightRect: return lambertFlux(intensity, double(light.intensity.w));
+    default: return pointFlux(intensity);
     }
 }
 

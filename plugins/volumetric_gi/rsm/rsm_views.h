@@ -20,8 +20,7 @@ struct RsmView {
 
 struct RsmPlan {
     std::vector<RsmView> views;
-    std::vector<dvec3>
-        power; // by box, of all its lights, watts: no more than this leaves them through its views
+    std::vector<dvec3> power; // by box, watts: what leaves all its lights through their views
     uint32_t lightsLeftOut = 0;
 };
 

@@ -22,7 +22,7 @@ struct CompensationOrder {
 /// By square, the lowest row first; w: 0. Empty where none was asked for.
 struct CompensationLight {
     std::vector<vec4>
-        onSurfaces; // nits that leave surfaces towards the eye over reflectance() in shaders/gi/vpl/receiver.glsl
+        onSurfaces; // nits that leave surfaces towards the eye over reflectance() in shaders/gi/shared/surface_light.glsl
     std::vector<vec4> inMedia; // nits that media scatter to the eye
     uint64_t nonFinite = 0;    // lights that were left out because they were no numbers
 };

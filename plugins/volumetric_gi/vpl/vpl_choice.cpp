@@ -1,13 +1,11 @@
 #include "volumetric_gi/vpl/vpl_choice.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <numeric>
 
 #include <tbb/parallel_for.h>
 
-#include "framegraph/hash.h"
 #include "volumetric_gi/vpl/compensation_light.h"
 
 namespace tyndall::volumetric_gi {
@@ -152,15 +150,6 @@ void chooseLights(Walks& walks, const std::vector<SeenPoint>& seen,
         }
         walk.erase(out, walk.end());
     }
-}
-
-uint64_t viewKey(const gpu::ViewData& view) {
-    uint64_t key = fg::kHashStart;
-    const auto mix = [&](float value) { key = fg::mixHash(key, std::bit_cast<uint32_t>(value)); };
-    for (int i = 0; i < 16; ++i) mix(view.viewFromRender[i / 4][i % 4]);
-    for (int i = 0; i < 2; ++i) mix(view.clipFromRender[i][i]);
-    for (int i = 0; i < 2; ++i) mix(view.size[i]);
-    return fg::mixHash(key, view.flags);
 }
 
 } // namespace tyndall::volumetric_gi

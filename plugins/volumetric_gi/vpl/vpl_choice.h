@@ -24,7 +24,4 @@ void chooseLights(Walks& walks, const std::vector<SeenPoint>& seen,
                   const tracing::SurfaceScene& surfaces, const tracing::MediaField& media,
                   double wanted, double least, uint64_t seed);
 
-/// Of the view, but for its jitter.
-uint64_t viewKey(const gpu::ViewData& view);
-
 } // namespace tyndall::volumetric_gi

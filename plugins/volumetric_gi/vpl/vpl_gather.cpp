@@ -3,114 +3,58 @@
 #include <algorithm>
 #include <bit>
 
-#include "framegraph/hash.h"
+#include "plugin/cache_key.h"
+#include "plugin/cached_upload.h"
+#include "plugin/reduced_march.h"
 
 namespace tyndall::volumetric_gi {
 namespace {
-
-/// One buffer of CPU data, uploaded where `key` is new. Sizes are rounded up to powers of two, so that few are ever made.
-fg::BufferHandle addUpload(fg::FrameGraph& graph, const char* name, const void* data, size_t bytes,
-                           uint64_t key) {
-    struct Data {
-        fg::BufferHandle buffer;
-        const void* data;
-        size_t bytes;
-    };
-    return graph
-        .addPass<Data>(
-            name,
-            [&](fg::Builder& builder, Data& pass) {
-                pass.buffer = builder.create(
-                    name, fg::BufferDesc{std::bit_ceil(std::max<size_t>(bytes, 256))},
-                    fg::Access::TransferWrite);
-                pass.data = data;
-                pass.bytes = bytes;
-                builder.cacheBy(key);
-            },
-            [](const Data& pass, fg::PassContext& context) {
-                if (pass.bytes > 0)
-                    context.upload(pass.buffer, 0, pass.data, pass.bytes);
-                else
-                    context.clearBuffer(pass.buffer, 0);
-            })
-        .buffer;
-}
 
 /// Grids are marched in steps even where frames are averaged: cell by cell a ray takes more rounds of loops than llvmpipe grants it.
 int32_t steppedKinds(const MediaResources& media, bool towardsLights) {
     return mediaKinds(media, towardsLights) & ~int32_t(gpu::kMediaExactGrids);
 }
 
-enum class Stage {
-    Squares, // or every pixel
-    Spread,  // from squares to pixels
-    Fill,    // pixels that were left open
-};
-
 /// What every pass that gathers reads.
 struct GatherData {
-    Stage stage = Stage::Squares;
-    ViewResources view;
-    GBuffer gbuffer;
+    MarchPass march;
+    GBuffer gbuffer; // of surfaces
     LightResources sceneLights;
-    MediaResources media;
     VplBuffers lights;
     gpu::VplParams params;
-    gpu::MarchParams march;
-    fg::TextureHandle transmittance, before, result; // before: coarse, or with pixels left open
+    fg::TextureHandle transmittance, before,
+        result; // of surfaces; before: coarse, or with pixels left open
 };
 
 void declare(fg::Builder& builder, GatherData& data, const plugin::FrameInputs& inputs,
-             const VplBuffers& lights, const VplGather& gather, int factor) {
-    data.view = inputs.view;
-    if (inputs.media.count > 0) { // in view or not: they attenuate what the lights send
-        data.media = readMedia(builder, inputs.media);
-        data.sceneLights = readLights(builder, inputs.lights);
-    }
+             const VplBuffers& lights, const VplGather& gather, MarchStage stage, int factor) {
+    gpu::MarchParams params = inputs.march;
+    params.factor = uint32_t(factor);
+    // Media in view or not: they attenuate what the lights send.
+    data.march = readMarch(builder, stage, inputs.view, inputs.media, inputs.gbuffer.depth, params);
+    if (inputs.media.count > 0) data.sceneLights = readLights(builder, inputs.lights);
     data.lights = readVpls(builder, lights);
     data.params = gather.params;
-    data.march = inputs.march;
-    data.march.factor = uint32_t(factor);
     data.params.mediaInView = inputs.transmittance ? 1u : 0u;
-}
-
-void readSurfaces(fg::Builder& builder, GatherData& data, const plugin::FrameInputs& inputs) {
-    data.gbuffer.depth = builder.read(inputs.gbuffer.depth);
-    data.gbuffer.normal = builder.read(inputs.gbuffer.normal);
-    data.gbuffer.base = builder.read(inputs.gbuffer.base);
-    data.gbuffer.material = builder.read(inputs.gbuffer.material);
-}
-
-fg::TextureDesc picture(const plugin::FrameInputs& inputs, int factor) {
-    return fg::texture2D(fg::Format::RGBA32F, (inputs.view.width + factor - 1) / factor,
-                         (inputs.view.height + factor - 1) / factor);
 }
 
 /// `mode`: kVplClamped and so on, as far as the shader knows it.
 fg::ComputeCommand begin(const GatherData& data, fg::PassContext& context, const char* shader,
                          uint32_t mode) {
-    const bool media = data.media.count > 0;
+    const MediaResources& of = data.march.media;
+    const bool media = of.count > 0;
     auto command = context.compute(
         shader, {{"MEDIA", media},
-                 {"PHASE_GROUPS", media ? int32_t(data.media.phaseGroups) : 1},
-                 {"MEDIA_KINDS", media ? steppedKinds(data.media, true) : 0},
+                 {"PHASE_GROUPS", media ? int32_t(of.phaseGroups) : 1},
+                 {"MEDIA_KINDS", media ? steppedKinds(of, true) : 0},
                  {"SOFT_SHADOWS",
                   0}, // of lights that compensation gathers: what they light is spread anyway
                  {"COMPENSATION", media ? int32_t(mode) : 0}});
-    bindView(command, data.view);
     if (media) {
         bindLights(command, data.sceneLights);
-        bindMedia(command, data.media);
+        bindMedia(command, of);
     }
-    bindVpls(command, data.lights, data.params).params(data.march);
-    return command;
-}
-
-/// For shaders that gather nothing.
-fg::ComputeCommand spread(const GatherData& data, fg::PassContext& context, const char* shader) {
-    auto command = context.compute(shader);
-    bindView(command, data.view);
-    command.params(data.march);
+    bindVpls(command, data.lights, data.params);
     return command;
 }
 
@@ -119,50 +63,45 @@ uint32_t surfaceMode(const GatherData& data) {
     return data.params.compensation == gpu::kVplTraced ? gpu::kVplTraced : gpu::kVplClamped;
 }
 
-void bindSurfaces(fg::ComputeCommand& command, const GBuffer& gbuffer) {
-    command.bind("gbufferDepth", gbuffer.depth)
-        .bind("gbufferNormal", gbuffer.normal)
-        .bind("gbufferBase", gbuffer.base)
-        .bind("gbufferMaterial", gbuffer.material);
+/// What all shaders of surfaces name.
+fg::ComputeCommand& bindSurfaces(fg::ComputeCommand& command, const GatherData& data) {
+    bindView(command, data.march.view).params(data.march.params);
+    return bindGBuffer(command, data.gbuffer);
 }
 
-/// Light that media scatter to the eye. `before`: of the stage before.
+constexpr LightMarchNames kMarchNames{"gi.vpl.march", "gi.vpl.upsample", "gi.vpl.refine",
+                                      "gi.vpl.inScatter", "gi.vpl.inScatter"};
+
+/// Light that media scatter to the eye.
 fg::TextureHandle addMarch(fg::FrameGraph& graph, const plugin::FrameInputs& inputs,
-                           const VplBuffers& lights, const VplGather& gather, Stage stage,
+                           const VplBuffers& lights, const VplGather& gather, MarchStage stage,
                            fg::TextureHandle before) {
-    constexpr const char* kPasses[] = {"gi.vpl.march", "gi.vpl.upsample", "gi.vpl.refine"};
+    struct Data {
+        GatherData gather;
+        LightMarch march;
+    };
     return graph
-        .addPass<GatherData>(
-            kPasses[int(stage)],
-            [&](fg::Builder& builder, GatherData& data) {
+        .addPass<Data>(
+            kMarchNames.of(stage),
+            [&](fg::Builder& builder, Data& data) {
                 if (inputs.media.count == 0 || !inputs.transmittance)
                     return builder.skip("no medium in view");
-                declare(builder, data, inputs, lights, gather, gather.mediaFactor);
-                data.gbuffer.depth = builder.read(inputs.gbuffer.depth);
-                data.stage = stage;
-                if (stage == Stage::Spread) data.transmittance = builder.read(inputs.transmittance);
-                if (stage != Stage::Squares) data.before = builder.read(before);
-                if (stage != Stage::Spread) data.lights.nearMedia = builder.read(lights.nearMedia);
-                if (stage == Stage::Fill) data.march.flags |= gpu::kMarchFill;
-                data.result = builder.create(
-                    "gi.vpl.inScatter",
-                    picture(inputs, stage == Stage::Squares ? gather.mediaFactor : 1));
+                declare(builder, data.gather, inputs, lights, gather, stage, gather.mediaFactor);
+                if (stage != MarchStage::Spread)
+                    data.gather.lights.nearMedia = builder.read(lights.nearMedia);
+                data.march = declareLightMarch(builder, data.gather.march, inputs.transmittance,
+                                               before, kMarchNames);
             },
-            [](const GatherData& data, fg::PassContext& context) {
+            [](const Data& data, fg::PassContext& context) {
+                const GatherData& from = data.gather;
+                const bool spreads = from.march.stage == MarchStage::Spread;
                 auto command =
-                    data.stage == Stage::Spread
-                        ? spread(data, context, "gi/vpl/upsample.comp")
-                        : begin(data, context, "gi/vpl/march.comp", data.params.compensation);
-                command.bind("depth", data.gbuffer.depth).bind("inScatter", data.result);
-                if (data.stage == Stage::Spread)
-                    command.bind("transmittance", data.transmittance)
-                        .bind("coarseInScatter", data.before);
-                else // where nothing is before, it is not looked at, but has to be something
-                    command.bind("gathered", data.before ? data.before : data.gbuffer.depth)
-                        .bind("VplNear", data.lights.nearMedia);
-                command.dispatchOver(data.result);
+                    spreads ? context.compute("gi/vpl/upsample.comp")
+                            : begin(from, context, "gi/vpl/march.comp", from.params.compensation);
+                if (!spreads) command.bind("VplNear", from.lights.nearMedia);
+                bindLightMarch(command, data.march).dispatchOver(data.march.light);
             })
-        .result;
+        .march.light;
 }
 
 /// Maps of the grids' optical depth around each light.
@@ -219,7 +158,7 @@ fg::BufferHandle addSplattedMaps(fg::FrameGraph& graph, const VplBuffers& buffer
             "gi.vpl.maps",
             [&](fg::Builder& builder, Data& data) {
                 data.places = builder.read(places);
-                data.triangles = builder.read(buffers.triangles);
+                data.triangles = builder.read(buffers.traced.triangles);
                 data.points = builder.read(points);
                 data.pointParams = pointParams;
                 data.params = params;
@@ -236,7 +175,7 @@ fg::BufferHandle addSplattedMaps(fg::FrameGraph& graph, const VplBuffers& buffer
                 command.params(data.params, "Vpl")
                     .params(data.pointParams, "Points")
                     .bind("VplPlaces", data.places)
-                    .bind("VplTriangles", data.triangles)
+                    .bind("TracedTriangles", data.triangles)
                     .bind("VplPoints", data.points)
                     .bind("VplMaps", data.maps)
                     .dispatch(std::min(data.params.lightCount, kRow),
@@ -251,8 +190,7 @@ VplBuffers readVpls(fg::Builder& builder, const VplBuffers& buffers) {
     return {builder.read(buffers.lights),
             builder.read(buffers.walks),
             builder.read(buffers.maps),
-            builder.read(buffers.triangles),
-            builder.read(buffers.tree),
+            readTraced(builder, buffers.traced),
             builder.read(buffers.depths),
             {},
             {}};
@@ -261,13 +199,12 @@ VplBuffers readVpls(fg::Builder& builder, const VplBuffers& buffers) {
 VplBuffers addVplUpload(fg::FrameGraph& graph, const plugin::FrameInputs& inputs,
                         const VplUpload& upload, const gpu::VplParams& params) {
     const auto add = [&](const char* name, const auto& values, uint64_t key) {
-        return addUpload(graph, name, values.data(), values.size() * sizeof(values[0]), key);
+        return addCachedUpload(graph, name, values, key);
     };
     VplBuffers buffers;
     buffers.lights = add("gi.vpl.lights", upload.set->lights, upload.lightsKey);
     buffers.walks = add("gi.vpl.walks", upload.set->walks, upload.mapsKey);
-    buffers.triangles = add("gi.vpl.triangles", *upload.triangles, upload.trianglesKey);
-    buffers.tree = add("gi.vpl.tree", *upload.tree, upload.trianglesKey);
+    buffers.traced = upload.traced;
     buffers.nearSurfaces = add("gi.vpl.nearSurfaces", *upload.nearSurfaces, upload.nearKey);
     buffers.nearMedia = add("gi.vpl.nearMedia", *upload.nearMedia, upload.nearKey);
     if (upload.points->points.empty()) {
@@ -280,57 +217,56 @@ VplBuffers addVplUpload(fg::FrameGraph& graph, const plugin::FrameInputs& inputs
                                        params, upload.mapsKey);
     }
     // Sizes are rounded up, so that the buffer's alone does not tell maps of one side from those of another.
-    const uint64_t depthsKey = fg::mixHash(upload.lightsKey, params.depthSide);
+    const uint64_t depthsKey = cacheKey(upload.lightsKey, params.depthSide);
     buffers.depths = addDepthMaps(graph, inputs, buffers.lights, depthsKey, params);
     return buffers;
 }
 
 fg::TextureHandle addVplSurfaces(fg::FrameGraph& graph, const plugin::FrameInputs& inputs,
                                  const VplBuffers& lights, const VplGather& gather) {
-    const auto gathering = [&](const char* name, Stage stage, fg::TextureHandle before) {
+    const auto gathering = [&](const char* name, MarchStage stage, fg::TextureHandle before) {
         return graph
             .addPass<GatherData>(
                 name,
                 [&](fg::Builder& builder, GatherData& data) {
-                    declare(builder, data, inputs, lights, gather, gather.surfaceFactor);
-                    readSurfaces(builder, data, inputs);
-                    fg::TextureDesc desc = picture(inputs, 1);
-                    if (stage == Stage::Squares) {
-                        desc = picture(inputs, gather.surfaceFactor);
+                    declare(builder, data, inputs, lights, gather, stage, gather.surfaceFactor);
+                    data.gbuffer = readGBuffer(builder, inputs.gbuffer);
+                    fg::TextureDesc desc = marchPicture(data.march);
+                    if (stage == MarchStage::Squares)
                         desc.width *= 3; // the parts of SurfaceLight
-                    } else {
+                    else
                         data.before = builder.read(before);
-                        data.march.flags |= gpu::kMarchFill;
-                    }
                     data.result = builder.create("gi.vpl.surfaceLight", desc);
                 },
                 [](const GatherData& data, fg::PassContext& context) {
                     auto command = begin(data, context, "gi/vpl/surfaces.comp", surfaceMode(data));
-                    bindSurfaces(command, data.gbuffer);
-                    command.bind("gathered", data.before ? data.before : data.gbuffer.depth)
+                    bindSurfaces(command, data)
+                        .bind("gathered", data.before ? data.before : data.gbuffer.depth)
                         .bind("surfaceLight", data.result)
                         .dispatchOver(data.result);
                 })
             .result;
     };
-    const fg::TextureHandle squares = gathering("gi.vpl.surfaces", Stage::Squares, {});
+    const fg::TextureHandle squares = gathering("gi.vpl.surfaces", MarchStage::Squares, {});
     const fg::TextureHandle pixels =
         graph
             .addPass<GatherData>(
                 "gi.vpl.upsampleSurfaces",
                 [&](fg::Builder& builder, GatherData& data) {
-                    declare(builder, data, inputs, lights, gather, gather.surfaceFactor);
-                    readSurfaces(builder, data, inputs);
+                    declare(builder, data, inputs, lights, gather, MarchStage::Spread,
+                            gather.surfaceFactor);
+                    data.gbuffer = readGBuffer(builder, inputs.gbuffer);
                     data.before = builder.read(squares);
                     data.lights.nearSurfaces = builder.read(lights.nearSurfaces);
                     if (inputs.transmittance)
                         data.transmittance = builder.read(inputs.transmittance);
-                    data.result = builder.create("gi.vpl.surfaceRadiance", picture(inputs, 1));
+                    data.result =
+                        builder.create("gi.vpl.surfaceRadiance", marchPicture(data.march));
                 },
                 [](const GatherData& data, fg::PassContext& context) {
-                    auto command = spread(data, context, "gi/vpl/upsample_surfaces.comp");
-                    bindSurfaces(command, data.gbuffer);
-                    command.params(data.params, "Vpl")
+                    auto command = context.compute("gi/vpl/upsample_surfaces.comp");
+                    bindSurfaces(command, data)
+                        .params(data.params, "Vpl")
                         .bind("squares", data.before)
                         .bind("VplNear", data.lights.nearSurfaces)
                         .bind("surfaceRadiance", data.result)
@@ -340,16 +276,16 @@ fg::TextureHandle addVplSurfaces(fg::FrameGraph& graph, const plugin::FrameInput
                 })
             .result;
     return gather.surfaceFactor == 1 ? pixels
-                                     : gathering("gi.vpl.refineSurfaces", Stage::Fill, pixels);
+                                     : gathering("gi.vpl.refineSurfaces", MarchStage::Fill, pixels);
 }
 
 fg::TextureHandle addVplMedia(fg::FrameGraph& graph, const plugin::FrameInputs& inputs,
                               const VplBuffers& lights, const VplGather& gather) {
-    const fg::TextureHandle rays = addMarch(graph, inputs, lights, gather, Stage::Squares, {});
-    if (!rays || gather.mediaFactor == 1) return rays;
-    const fg::TextureHandle pixels = addMarch(graph, inputs, lights, gather, Stage::Spread, rays);
-    if (!(inputs.march.flags & gpu::kMarchRefine)) return pixels;
-    return addMarch(graph, inputs, lights, gather, Stage::Fill, pixels);
+    const bool fills = (inputs.march.flags & gpu::kMarchRefine) != 0;
+    return addMarchStages<fg::TextureHandle>(
+        gather.mediaFactor, fills, [&](MarchStage stage, fg::TextureHandle before) {
+            return addMarch(graph, inputs, lights, gather, stage, before);
+        });
 }
 
 } // namespace tyndall::volumetric_gi

@@ -1,16 +1,16 @@
 #pragma once
 // Virtual point lights on the GPU: their buffers, and what they do in the picture.
 
-#include "plugin/plugin_api.h"
-#include "tracing/triangle_tree.h"
 #include "shared/vpl.h"
+#include "volumetric_gi/shared/traced_scene.h"
 #include "volumetric_gi/vpl/vpl_points.h"
 #include "volumetric_gi/vpl/vpl_walks.h"
 
 namespace tyndall::volumetric_gi {
 
 struct VplBuffers {
-    fg::BufferHandle lights, walks, maps, triangles, tree;
+    fg::BufferHandle lights, walks, maps;
+    TracedBuffers traced;
     fg::BufferHandle depths;                  // of grids; null: without
     fg::BufferHandle nearSurfaces, nearMedia; // CompensationLight
 };
@@ -21,24 +21,22 @@ struct VplBuffers {
 /// For shaders that include gi/vpl/lights.glsl.
 template <typename Command>
 Command& bindVpls(Command& command, const VplBuffers& buffers, const gpu::VplParams& params) {
-    return command.params(params, "Vpl")
+    return bindTraced(command, buffers.traced)
+        .params(params, "Vpl")
         .bind("VplLights", buffers.lights)
         .bind("VplWalks", buffers.walks)
         .bind("VplMaps", buffers.maps)
-        .bind("VplTriangles", buffers.triangles)
-        .bind("VplTree", buffers.tree)
         .bind("VplDepths", buffers.depths);
 }
 
-/// What goes up; must live until the frame has been executed. `lightsKey`, `mapsKey`, `trianglesKey`: of its content.
+/// What goes up; must live until the frame has been executed. `lightsKey`, `mapsKey`, `nearKey`: of its content.
 struct VplUpload {
     const VplSet* set = nullptr;
     const std::vector<uint32_t>* maps = nullptr; // as rays have made them
     const SurfacePoints* points = nullptr;       // not empty: they are to be splatted into maps
-    const std::vector<gpu::VplTriangle>* triangles = nullptr;
-    const std::vector<tracing::TreeNode>* tree = nullptr;
+    TracedBuffers traced;
     const std::vector<vec4>*nearSurfaces = nullptr, *nearMedia = nullptr; // empty: without
-    uint64_t lightsKey = 0, mapsKey = 0, trianglesKey = 0, nearKey = 0;
+    uint64_t lightsKey = 0, mapsKey = 0, nearKey = 0;
 };
 
 /// How lights are gathered.

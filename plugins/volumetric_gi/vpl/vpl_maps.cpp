@@ -7,6 +7,7 @@
 #include <tbb/parallel_for.h>
 
 #include "core/low_discrepancy.h"
+#include "shared/traced.h"
 
 namespace tyndall::volumetric_gi {
 namespace {
@@ -32,7 +33,7 @@ std::vector<uint32_t> makeVisibilityMaps(const tracing::SurfaceScene& surfaces, 
                                          uint32_t side, uint32_t jitter) {
     const size_t texels = size_t(side) * side;
     const size_t stride = texels + 1;
-    std::vector<uint32_t> maps(set.lights.size() * stride, gpu::kVplNothing);
+    std::vector<uint32_t> maps(set.lights.size() * stride, gpu::kNoTriangle);
     std::vector<dvec3> directions(texels);
     for (uint32_t y = 0; y < side; ++y)
         for (uint32_t x = 0; x < side; ++x) {

@@ -8,7 +8,7 @@
 
 namespace tyndall::volumetric_gi {
 
-/// Numbers of triangles (SurfaceScene::triangles), kVplNothing where no surface is: `side`² for each light of the set, and behind them, as the bits of a
+/// Numbers of triangles (SurfaceScene::triangles), kNoTriangle where no surface is: `side`² for each light of the set, and behind them, as the bits of a
 /// float, metres up to which the light sees no surface, as far as rays tell. `jitter`: number of a pattern of places within texels; 0: their middles.
 std::vector<uint32_t> makeVisibilityMaps(const tracing::SurfaceScene& surfaces, const VplSet& set,
                                          uint32_t side, uint32_t jitter);

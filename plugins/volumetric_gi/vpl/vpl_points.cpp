@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/low_discrepancy.h"
+#include "shared/traced.h"
 #include "tracing/sampler.h"
 
 namespace tyndall::volumetric_gi {
@@ -121,7 +122,7 @@ SurfacePoints makeSurfacePoints(const tracing::SurfaceScene& surfaces,
             const double chance = lowDiscrepancyPoint(i, ~sequence).x;
             // Sets are equally long: a point that covers nothing stands for itself, on no triangle.
             const bool counts = covered(surfaces, triangle, at, triangles[triangle], chance);
-            made.points.push_back({vec3(at), counts ? triangle : gpu::kVplNothing});
+            made.points.push_back({vec3(at), counts ? triangle : gpu::kNoTriangle});
         }
     made.params = {vec4(vec3(around.middle), float(around.squared)),
                    float(kOverlap * std::sqrt(whole / (kPi * setSize))), setSize, setCount, 0};

@@ -1,11 +1,11 @@
 #include "volumetric_gi/vpl/vpl_technique.h"
 
 #include <algorithm>
-#include <bit>
 #include <chrono>
 #include <cmath>
 
 #include "framegraph/hash.h"
+#include "plugin/cache_key.h"
 #include "volumetric_gi/vpl/vpl_choice.h"
 #include "volumetric_gi/vpl/vpl_maps.h"
 
@@ -107,21 +107,17 @@ bool converges(const plugin::FrameInputs& inputs) {
 
 void VplTechnique::makeLights(const plugin::FrameInputs& inputs) {
     const uint32_t generation = converges(inputs) ? inputs.view.data.frameIndex : 0;
-    uint64_t order = fg::kHashStart;
-    for (const uint64_t value :
-         {uint64_t(generation), uint64_t(inputs.view.data.seed), uint64_t(used_.walks),
-          uint64_t(used_.mapSide), uint64_t(used_.maps), uint64_t(used_.points),
-          uint64_t(used_.fromSurfaces), uint64_t(used_.fromMedia)})
-        order = fg::mixHash(order, value);
     // Which lights matter changes with the media: where walks are to be kept, all are.
     const bool inTurns = used_.renewed > 0 && !used_.incremental && !converges(inputs);
     const uint32_t candidates =
         used_.incremental || inTurns ? 1 : uint32_t(used_.candidates);
-    order = fg::mixHash(order, candidates);
-    if (candidates > 1) order = fg::mixHash(order, viewKey(inputs.view.data));
-    const uint64_t walksKey = fg::mixHash(order, scene_.walksKey()),
-                   lightsKey = fg::mixHash(order, scene_.key()),
-                   surfacesKey = fg::mixHash(order, scene_.surfacesKey());
+    const uint64_t order =
+        cacheKey(generation, inputs.view.data.seed, used_.walks, used_.mapSide,
+                 used_.maps, used_.points, used_.fromSurfaces, used_.fromMedia,
+                 candidates, candidates > 1 ? viewKey(inputs.view.data) : 0);
+    const uint64_t walksKey = cacheKey(order, scene_.walksKey()),
+                   lightsKey = cacheKey(order, scene_.key()),
+                   surfacesKey = cacheKey(order, scene_.surfacesKey());
     times_ = {};
     walksTraced_ = 0;
     if (lightsKey == lightsKey_ && used_.keep) return;
@@ -199,7 +195,7 @@ void VplTechnique::renewSome(const WalkOrder& order, uint64_t lightsKey) {
     walksTraced_ = count;
     stale_ -= count;
     nextTurn_ = first + count < order.walks ? first + count : 0;
-    lightsKey_ = walksKey_ = fg::mixHash(lightsKey, uint64_t(stale_) + 1);
+    lightsKey_ = walksKey_ = cacheKey(lightsKey, stale_);
 }
 
 /// Of the lights of all candidates those that matter to the picture.
@@ -271,7 +267,6 @@ VplGather VplTechnique::gather(const plugin::FrameInputs& inputs) const {
     params.classes = classes(used_.classes, 2 * double(used_.samples)); // with compensation
     params.surfaceClasses = classes(used_.surfaceClasses, 1);
     params.mapSide = maps_.empty() && points_.points.empty() ? 0 : uint32_t(used_.mapSide);
-    params.treeSize = used_.mapSide > 0 ? uint32_t(scene_.tree().size()) : 0;
     // The bound follows from all lights of an average: what it takes away tends to nothing as frames come.
     const double frames =
         converges(inputs) && !asPrinted() ? double(inputs.view.data.frameIndex) + 1 : 1;
@@ -338,7 +333,7 @@ plugin::SettingsTable VplTechnique::settings() {
 plugin::FrameOutputs VplTechnique::addPasses(fg::FrameGraph& graph,
                                              const plugin::FrameInputs& inputs) {
     used_ = asPrinted() ? asInThePaper(settings_) : settings_;
-    if (Result<void> ready = scene_.update(inputs, used_.incremental); !ready.ok()) {
+    if (Result<void> ready = scene_.update(inputs, {used_.incremental}); !ready.ok()) {
         if (said_ != ready.message()) host().log(("vpl: " + ready.message()).c_str());
         said_ = ready.message();
         return {};
@@ -346,10 +341,11 @@ plugin::FrameOutputs VplTechnique::addPasses(fg::FrameGraph& graph,
     makeLights(inputs);
     gather_ = gather(inputs);
     makeNear(inputs);
+    TracedBuffers traced = scene_.buffers(graph);
+    if (settings_.mapSide == 0) traced.params.treeSize = 0;
     buffers_ = addVplUpload(graph, inputs,
-                            {&set_, &maps_, &points_, &scene_.triangles(), &scene_.tree(),
-                             &near_.onSurfaces, &near_.inMedia, lightsKey_, walksKey_,
-                             scene_.surfacesKey(), nearVersion_},
+                            {&set_, &maps_, &points_, traced, &near_.onSurfaces, &near_.inMedia,
+                             lightsKey_, walksKey_, nearVersion_},
                             gather_.params);
     plugin::FrameOutputs outputs;
     if (inputs.terms & kIndirectOnSurfaces)
@@ -403,6 +399,7 @@ fg::TextureHandle VplTechnique::addDebugView(fg::FrameGraph& graph,
     const fg::TextureHandle shown =
         addVplShow(graph, inputs, used_, buffers_, gather_.params, radius, gathered_, color);
     buffers_ = {}; // of this frame alone
+    scene_.endFrame();
     gathered_ = {};
     return shown;
 }

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "volumetric_gi/shared/gi_technique.h"
-#include "volumetric_gi/vpl/traced_scene.h"
+#include "volumetric_gi/shared/traced_scene.h"
 #include "volumetric_gi/vpl/vpl_gather.h"
 #include "volumetric_gi/vpl/compensation_light.h"
 #include "volumetric_gi/vpl/vpl_settings.h"

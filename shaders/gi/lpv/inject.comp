@@ -3,13 +3,11 @@
 //
 // Powers are closed forms of the ray's optical depth, so that their sum over a ray is exact however coarse the lattice. They are added in
 // fixed point: the same bits in whatever order texels come. What rounding leaves goes to the ray's next cell.
-#include "common/octahedral.glsl"
-#include "common/view.glsl"
+#include "common/receiver.glsl"
 #include "gi/lpv/reflection.glsl"
 #include "gi/lpv/lattice.glsl"
 #include "gi/lpv/sides.glsl"
 #include "lighting/light.glsl"
-#include "shared/gbuffer.h"
 #if MEDIA
 #include "media/optical_depth.glsl"
 #endif
@@ -19,10 +17,6 @@ layout(local_size_x = 8, local_size_y = 8) in;
 layout(std140) uniform Inject { LpvInjectParams inject; };
 layout(std430) readonly buffer LpvMedium { vec4 medium[]; };
 layout(std430) buffer LpvDeposits { int deposits[]; };
-uniform sampler2D rsmDepth;
-uniform sampler2D rsmNormal;
-uniform sampler2D rsmBase;
-uniform sampler2D rsmMaterial;
 
 const int kMostCells = 1024; // along a ray; ends one whose coordinates have lost their meaning
 
@@ -140,31 +134,28 @@ void main() {
     Ray ray = cameraRay(pixel);
     vec3 power = texelPower(texel, ray) * inject.scale.rgb;
     if (!(maximumOf(power) > 0.0)) return;
-    float surface = rayDistanceFromDepth(pixel, texelFetch(rsmDepth, texel, 0).r);
+    float surface = rayDistanceFromDepth(pixel, texelFetch(gbufferDepth, texel, 0).r);
     Rests rests = Rests(vec4[3](vec4(0.0), vec4(0.0), vec4(0.0)), vec3(0.0));
     vec3 depth = vec3(0.0);
 #if MEDIA && SCATTER
     scatterAlong(ray, power, min(surface, kInfiniteDistance), rests, depth);
 #endif
 #if REFLECT
-    if (surface >= kSkyDistance) return;
-    vec4 material = texelFetch(rsmMaterial, texel, 0);
-    if ((uint(material.w * 65535.0 + 0.5) & kGBufferUnlit) != 0u) return;
-    vec4 base = texelFetch(rsmBase, texel, 0);
-    vec3 normal = octahedralDecodeUnorm(texelFetch(rsmNormal, texel, 0).zw);
-    vec3 place = latticePosition(ray.origin + ray.direction * surface) + kOffSurface * normal;
+    Receiver r;
+    if (!receiverAt(texel, r)) return;
+    vec3 place = latticePosition(r.position) + kOffSurface * r.facet;
     if (any(lessThan(place, vec3(0.0))) || any(greaterThanEqual(place, vec3(params.grid.size.xyz)))) return;
     ivec3 cell = cellOnSide(params.grid, place);
-    Reflection reflected = reflectionOf(base, material.x, material.y);
+    Reflection reflected = reflectionOf(r.brdf, r.roughness);
     float window = lights[inject.light].type == kLightDirectional ? 1.0 : rangeWindow(lights[inject.light].position.w, surface);
     depth = depthBefore(ray, surface);
     Rests none = Rests(vec4[3](vec4(0.0), vec4(0.0), vec4(0.0)), vec3(0.0));
     vec3 arriving = power * window * exp(-depth);
     // One deposit: a cell holds no more of light that enters it than the first moment of all of it.
-    vec3 mirror = reflect(ray.direction, normal);
-    vec3 along = meanOfLobe(mirror, normal, material.x);
+    vec3 mirror = reflect(ray.direction, r.facet);
+    vec3 along = meanOfLobe(mirror, r.facet, r.roughness);
     vec3 all = reflected.even + reflected.mirrored;
     float share = meanOf(reflected.mirrored) / max(meanOf(all), 1e-6);
-    depositEntering(cellIndex(cell), cellCount(), arriving * all, mix((2.0 / 3.0) * normal, along, share), none);
+    depositEntering(cellIndex(cell), cellCount(), arriving * all, mix((2.0 / 3.0) * r.facet, along, share), none);
 #endif
 }

@@ -1,6 +1,7 @@
 // What a surface reflects, in two bands of harmonics: all that they hold of a lobe is its power and its mean direction.
 #ifndef TYNDALL_GI_LPV_REFLECTION
 #define TYNDALL_GI_LPV_REFLECTION
+#include "lighting/brdf.glsl"
 
 /// Reflectances of what is scattered evenly and of what coats and metals reflect about the mirror's direction.
 struct Reflection {
@@ -8,14 +9,14 @@ struct Reflection {
     vec3 mirrored;
 };
 
-/// `base`: base colour and metallic, `specular`: weight of the coat, as in the G-buffer. Means over light from all sides of the microfacets of
-/// lighting/brdf.glsl, which lose light where they are rough: fits to within 0.003 (coat) and 0.03 (metal) of its integrals over the hemisphere.
-Reflection reflectionOf(vec4 base, float roughness, float specular) {
+/// Means over light from all sides of the microfacets of lighting/brdf.glsl, which lose light where they are rough: fits to within 0.003 (coat) and 0.03
+/// (metal) of its integrals over the hemisphere.
+Reflection reflectionOf(Brdf brdf, float roughness) {
     float r = clamp(roughness, 0.0, 1.0);
-    float coat = specular * (0.0189 + 0.0669 * (1.0 + r * r * (1.896 * r - 2.896)));
-    vec3 metal = base.rgb * (1.0 - 0.591 * pow(r, 2.2));
+    float coat = brdf.specular * (0.0189 + 0.0669 * (1.0 + r * r * (1.896 * r - 2.896)));
+    vec3 metal = brdf.baseColor * (1.0 - 0.591 * pow(r, 2.2));
     const float kFresnel = 0.06; // mean of the coat's over the half-way vectors of rough surfaces: what the base does not get
-    return Reflection(base.rgb * ((1.0 - kFresnel * specular) * (1.0 - base.w)), mix(vec3(coat), metal, base.w));
+    return Reflection(brdf.baseColor * ((1.0 - kFresnel * brdf.specular) * (1.0 - brdf.metallic)), mix(vec3(coat), metal, brdf.metallic));
 }
 
 /// Mean direction of the lobe about `mirror`: that itself where the surface is smooth, Lambert's where it is rough.

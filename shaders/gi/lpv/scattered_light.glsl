@@ -2,34 +2,30 @@
 #define MARCH_PHASE_GROUPS PHASE_GROUPS
 #include "common/phase_function.glsl"
 #include "gi/lpv/lookup.glsl"
-#include "media/march_segment.glsl"
+#include "media/march_loop.glsl"
 
-const int kMostSegments = 16384; // ends a march whose coordinates have lost their meaning
+/// 4π times the light that a segment's media scatter against `direction`: nits, before the segment's own extinction.
+vec3 latticeScattered(Segment s, vec3 position, vec3 direction) {
+    LatticeLight light = latticeLight(position, vec3(0.0));
+    vec3 all = fluence(light);
+    vec3 towardsEye = -fluxAlong(light, direction);
+    vec3 scattered = vec3(0.0);
+    for (uint g = 0u; g < min(mediaHeader.phaseGroupCount, uint(MARCH_PHASE_GROUPS)); ++g) {
+        float cosine = phaseMeanCosine(uint(mediaHeader.phases[g].x), mediaHeader.phases[g].y);
+        scattered += s.scattering[g] * max(all + 3.0 * cosine * towardsEye, vec3(0.0));
+    }
+    return scattered;
+}
 
 /// Nits that reach the ray's origin from up to `distance` metres.
-vec3 lightScatteredAlong(Ray ray, float distance) {
+vec3 mediaLight(Ray ray, float distance, ivec2 pixel, uvec2 number) {
     vec3 sum = vec3(0.0);
-    float t;
-    float end;
-    if (mediaExtent(ray, distance, t, end)) {
-        vec3 before = vec3(0.0);
-        float opaque = -log(max(mediaHeader.minTransmittance, 1e-30));
-        for (int i = 0; i < kMostSegments && t < end && minimumOf(before) < opaque; ++i) {
-            Segment s = marchSegment(ray, t, end);
-            t = s.start + s.size;
-            if (s.scatters) {
-                LatticeLight light = latticeLight(ray.origin + ray.direction * (s.start + 0.5 * s.size), vec3(0.0));
-                vec3 all = fluence(light);
-                vec3 towardsEye = -fluxAlong(light, ray.direction);
-                vec3 scattered = vec3(0.0);
-                for (uint g = 0u; g < min(mediaHeader.phaseGroupCount, uint(MARCH_PHASE_GROUPS)); ++g) {
-                    float cosine = phaseMeanCosine(uint(mediaHeader.phases[g].x), mediaHeader.phases[g].y);
-                    scattered += s.scattering[g] * max(all + 3.0 * cosine * towardsEye, vec3(0.0));
-                }
-                sum += exp(-before) * oneMinusExpOverX(s.depth) * scattered / (4.0 * kPi);
-            }
-            before = min(before + s.depth, vec3(kOpaque));
-        }
-    }
+    March march;
+    Segment s;
+    if (beginMarch(ray, distance, march))
+        while (nextSegment(ray, march, s))
+            if (s.scatters)
+                sum += exp(-march.before) * oneMinusExpOverX(s.depth) *
+                       latticeScattered(s, ray.origin + ray.direction * (s.start + 0.5 * s.size), ray.direction) / (4.0 * kPi);
     return sum;
 }

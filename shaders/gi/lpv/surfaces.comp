@@ -1,17 +1,11 @@
 // Indirect light of surfaces from the lattice, before the media between them and the eye. Of what a coat or a metal reflects two bands hold
 // no more than from which side it comes.
-#include "common/octahedral.glsl"
-#include "common/view.glsl"
+#include "common/receiver.glsl"
 #include "gi/lpv/reflection.glsl"
 #include "gi/lpv/lookup.glsl"
-#include "shared/gbuffer.h"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
-uniform sampler2D gbufferDepth;
-uniform sampler2D gbufferNormal;
-uniform sampler2D gbufferBase;
-uniform sampler2D gbufferMaterial;
 layout(rgba32f) writeonly uniform image2D surfaceRadiance;
 
 /// Diffuse light that arrives on a surface, of what goes to it (`towards`) and comes from it (`away`) at `depth` of a medium before it: two
@@ -31,25 +25,19 @@ void main() {
     ivec2 texel = ivec2(gl_GlobalInvocationID.xy);
     if (any(greaterThanEqual(texel, imageSize(surfaceRadiance)))) return;
     vec3 radiance = vec3(0.0);
-    float depth = texelFetch(gbufferDepth, texel, 0).r;
-    vec4 material = texelFetch(gbufferMaterial, texel, 0);
-    if (depth > 0.0 && (uint(material.w * 65535.0 + 0.5) & kGBufferUnlit) == 0u) {
-        vec4 normals = texelFetch(gbufferNormal, texel, 0);
-        vec4 base = texelFetch(gbufferBase, texel, 0);
-        vec3 normal = octahedralDecodeUnorm(normals.xy);
+    Receiver r;
+    if (receiverAt(texel, r)) {
         // Off the surface: cells behind it have no part in its light. A little towards the eye: a point on an edge is on no side of the
         // other surface there, but the eye is.
-        vec2 pixel = vec2(texel) + 0.5;
-        vec3 offSurface = kOffSurface * octahedralDecodeUnorm(normals.zw) - 0.01 * cameraRay(pixel).direction;
-        vec3 position = renderPosition(pixel, depth);
-        LatticeLight light = latticeLight(position, offSurface);
+        vec3 offSurface = kOffSurface * r.facet + 0.01 * r.toEye;
+        LatticeLight light = latticeLight(r.position, offSurface);
         // Of radiance (Φ + 3 F·ω)/4π, what goes through a plane one way and the other: Φ/4 ∓ F·n/2.
         vec3 each = 0.25 * fluence(light);
-        vec3 net = 0.5 * fluxAlong(light, normal);
-        vec2 medium = latticeMedium(position, offSurface);
+        vec3 net = 0.5 * fluxAlong(light, r.normal);
+        vec2 medium = latticeMedium(r.position, offSurface);
         vec3 irradiance = arrivingThrough(max(each - net, vec3(0.0)), max(each + net, vec3(0.0)), kOffSurface * medium.x, medium.y);
-        Reflection reflection = reflectionOf(base, material.x, material.y);
-        vec3 lobe = meanOfLobe(reflect(cameraRay(pixel).direction, normal), normal, material.x);
+        Reflection reflection = reflectionOf(r.brdf, r.roughness);
+        vec3 lobe = meanOfLobe(reflect(-r.toEye, r.normal), r.normal, r.roughness);
         vec3 mirrored = max(fluence(light) - 3.0 * fluxAlong(light, lobe), vec3(0.0)) / (4.0 * kPi);
         radiance = reflection.even * irradiance / kPi + reflection.mirrored * mirrored;
     }

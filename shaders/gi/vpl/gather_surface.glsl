@@ -6,7 +6,7 @@
 #include "common/random.glsl"
 #include "gi/vpl/visibility.glsl"
 #endif
-#include "gi/vpl/receiver.glsl"
+#include "gi/shared/surface_light.glsl"
 
 void addLight(inout SurfaceLight sum, Receiver r, vec3 direction, vec3 irradiance) {
     float viewDotHalf;

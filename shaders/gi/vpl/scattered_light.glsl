@@ -94,19 +94,12 @@ float importanceOf(Segment s, vec3 before) {
 /// there is.
 vec3 lightScatteredAlong(Ray ray, float distance, uvec2 pixel) {
     vec3 sum = vec3(0.0);
-    float t0;
-    float end;
-    if (!mediaExtent(ray, distance, t0, end)) return sum;
-    float opaque = -log(max(mediaHeader.minTransmittance, 1e-30));
-    vec3 before = vec3(0.0);
+    March march;
+    if (!beginMarch(ray, distance, march)) return sum;
+    March again = march;
+    Segment s;
     float total = 0.0;
-    float t = t0;
-    for (int i = 0; i < kMostSegments && t < end && minimumOf(before) < opaque; ++i) {
-        Segment s = marchSegment(ray, t, end);
-        t = s.start + s.size;
-        total += importanceOf(s, before);
-        before = min(before + s.depth, vec3(kOpaque));
-    }
+    while (nextSegment(ray, march, s)) total += importanceOf(s, march.before);
     if (!(total > 0.0)) return sum;
 
     uint number = uint(pixelNoise(pixel, 21u) * float(vpl.classes));
@@ -118,21 +111,15 @@ vec3 lightScatteredAlong(Ray ray, float distance, uvec2 pixel) {
     float passed = pixelNoise(pixel, 28u); // in units of a sample: one is taken wherever this reaches a whole number
     float perSample = float(vpl.samples) / total;
     // Sample by sample, so that invocations side by side gather together however their segments lie.
-    before = vec3(0.0);
-    t = t0;
+    march = again;
     float next = floor(passed) + 1.0;
     float expected = 0.0;
-    Segment s;
-    s.depth = vec3(0.0);
-    for (int i = 0;;) {
+    for (;;) {
         bool more = true;
         while (next > passed && more) {
-            before = min(before + s.depth, vec3(kOpaque));
-            more = i++ < kMostSegments && t < end && minimumOf(before) < opaque;
+            more = nextSegment(ray, march, s);
             if (more) {
-                s = marchSegment(ray, t, end);
-                t = s.start + s.size;
-                expected = importanceOf(s, before) * perSample;
+                expected = importanceOf(s, march.before) * perSample;
                 passed += expected;
             }
         }
@@ -142,7 +129,7 @@ vec3 lightScatteredAlong(Ray ray, float distance, uvec2 pixel) {
         GatherPoint point = gatherBySegment(s, noise);
         vec3 position = ray.origin + ray.direction * (s.start + s.size * point.fraction);
         vec3 light = gatherAt(number, number + other, position, ray.direction, s, u);
-        sum += exp(-before) * point.weight * light / expected;
+        sum += exp(-march.before) * point.weight * light / expected;
         noise = fract(noise + 0.61803399);
         u = fract(u + vec4(0.85667488, 0.73389185, 0.62870672, 0.53859725)); // powers of the root of x⁵ = x + 1: well spread in four dimensions
     }

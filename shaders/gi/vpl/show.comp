@@ -32,8 +32,8 @@ vec3 balls(Ray ray, float distance, vec3 picture) {
 /// `at`: in the map, [0,1)².
 vec3 mapAt(uint light, vec2 at) {
     uint id = vplTriangleAt(light, ivec2(at * float(vpl.mapSide)));
-    if (id == kVplNothing) return vec3(0.0);
-    return show.white * (0.5 + 0.5 * vplTriangles[id].plane.xyz);
+    if (id == kNoTriangle) return vec3(0.0);
+    return show.white * (0.5 + 0.5 * tracedTriangles[id].plane.xyz);
 }
 
 /// The map in the lower left corner, half as high as the picture.

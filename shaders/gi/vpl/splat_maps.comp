@@ -3,15 +3,17 @@
 // the nearest ones. No number in the end depends on the order of threads.
 #include "common/octahedral.glsl"
 #include "gi/vpl/map_texel.glsl"
+#include "shared/traced.h"
 
 layout(local_size_x = 256) in;
 
 layout(std140) uniform Points { VplPointParams points; };
 layout(std430) readonly buffer VplPlaces { VplPlace vplPlaces[]; };
-layout(std430) readonly buffer VplTriangles { VplTriangle vplTriangles[]; };
+layout(std430) readonly buffer TracedTriangles { TracedTriangle tracedTriangles[]; };
 layout(std430) readonly buffer VplPoints { VplPoint vplPoints[]; };
 layout(std430) coherent buffer VplMaps { uint vplMaps[]; }; // numbers of points until the last step
 
+const uint kNothing = kNoTriangle; // no triangle, and no point
 const uint kThreads = 256u;
 const int kSmallSplat = 3;      // texels that a thread's own splat reaches to each side of the middle
 const uint kMostLarge = 256u;   // larger splats that all threads share
@@ -53,7 +55,7 @@ Disc discOf(uint point) {
     Disc disc;
     vec3 position = vplPoints[point].position;
     disc.way = position - origin;
-    disc.normal = vplTriangles[vplPoints[point].triangle].plane.xyz;
+    disc.normal = tracedTriangles[vplPoints[point].triangle].plane.xyz;
     disc.toPlane = dot(disc.normal, disc.way);
     disc.radius = radiusOf(position);
     disc.near = length(disc.way) - disc.radius;
@@ -71,8 +73,8 @@ float distanceAlong(uint point, vec3 direction) { return distanceAlong(discOf(po
 
 /// The nearer of two points in a direction; of equals that of lesser number.
 uint nearer(uint one, uint other, vec3 direction) {
-    if (one == kVplNothing || one == other) return other;
-    if (other == kVplNothing) return one;
+    if (one == kNothing || one == other) return other;
+    if (other == kNothing) return one;
     float here = distanceAlong(one, direction);
     float there = distanceAlong(other, direction);
     return here < there || (here == there && one < other) ? one : other;
@@ -82,7 +84,7 @@ void offer(uint texel, uint point, float distance, vec3 direction) {
     uint held = vplMaps[mapStart + texel];
     // Each round more means that another point, nearer than the last, took the texel.
     for (;;) {
-        if (held != kVplNothing) {
+        if (held != kNothing) {
             float there = distanceAlong(held, direction);
             if (there < distance || (there == distance && held <= point)) return;
         }
@@ -98,7 +100,7 @@ bool onDisc(uint point, Disc disc, vec3 at, float radii) {
     vec3 off = at - disc.way;
     float reach = radii * disc.radius;
     if (dot(off, off) > reach * reach) return false;
-    VplTriangle triangle = vplTriangles[vplPoints[point].triangle];
+    TracedTriangle triangle = tracedTriangles[vplPoints[point].triangle];
     // The inverse of the radius of the circle in a triangle is the sum of the inverses of its heights.
     float inverse = length(triangle.second) + length(triangle.third) + length(triangle.second + triangle.third);
     if (disc.radius * inverse > 1.0) return true;
@@ -109,7 +111,7 @@ bool onDisc(uint point, Disc disc, vec3 at, float radii) {
 }
 
 /// Rays may pass its triangle: nothing but the point itself hides anything.
-bool veils(uint point) { return vplTriangles[vplPoints[point].triangle].corner.w == 0.0; }
+bool veils(uint point) { return tracedTriangles[vplPoints[point].triangle].corner.w == 0.0; }
 
 ivec2 texelOf(Disc disc) {
     vec2 at = octahedralEncode(normalize(disc.way)) * 0.5 + 0.5;
@@ -131,7 +133,7 @@ void splatOn(uint point, Disc disc, ivec2 middle, ivec2 off) {
 }
 
 void splat(uint point, vec3 normal, bool onSurface) {
-    if (vplPoints[point].triangle == kVplNothing) return;
+    if (vplPoints[point].triangle == kNothing) return;
     Disc disc = discOf(point);
     if (abs(disc.toPlane) <= kOwnPlane * (length(disc.way) + length(origin))) return;
     if (onSurface && dot(normal, disc.way) < -disc.radius) return;
@@ -164,19 +166,19 @@ void splatLarge() {
 
 /// Of the texels of a cell of the finest level.
 uint nearestIn(uvec2 cell, uint width) {
-    uint found = kVplNothing;
+    uint found = kNothing;
     for (uint y = cell.y * width; y < min((cell.y + 1u) * width, vpl.mapSide); ++y)
         for (uint x = cell.x * width; x < min((cell.x + 1u) * width, vpl.mapSide); ++x) {
             uint texel = y * vpl.mapSide + x;
             uint point = vplMaps[mapStart + texel];
-            if (point != kVplNothing && !veils(point)) found = nearer(found, point, directionOf(texel));
+            if (point != kNothing && !veils(point)) found = nearer(found, point, directionOf(texel));
         }
     return found;
 }
 
 /// The same of four cells, by what is nearest as a whole.
 uint nearestOf(uint one, uint other) {
-    if (one == kVplNothing) return other;
+    if (one == kNothing) return other;
     return nearer(one, other, normalize(vplPoints[one].position - origin));
 }
 
@@ -209,7 +211,7 @@ void pullAndPush(uint cellWidth) {
             fine = (fine + 1u) / 2u;
         }
         for (uint i = gl_LocalInvocationIndex; i < fine * fine; i += kThreads)
-            if (cells[below + i] == kVplNothing) cells[below + i] = cells[start + (i / fine / 2u) * ((fine + 1u) / 2u) + (i % fine) / 2u];
+            if (cells[below + i] == kNothing) cells[below + i] = cells[start + (i / fine / 2u) * ((fine + 1u) / 2u) + (i % fine) / 2u];
         barrier();
         start = below;
     }
@@ -219,16 +221,16 @@ void finish(uint texels, uint cellWidth) {
     uint side = (vpl.mapSide + cellWidth - 1u) / cellWidth;
     for (uint texel = gl_LocalInvocationIndex; texel < texels; texel += kThreads) {
         uint point = vplMaps[mapStart + texel];
-        if (point == kVplNothing) {
+        if (point == kNothing) {
             point = cells[texel / vpl.mapSide / cellWidth * side + texel % vpl.mapSide / cellWidth];
-            if (point != kVplNothing) {
+            if (point != kNothing) {
                 // Farther off there is nothing rather than something that points have missed.
                 Disc disc = discOf(point);
                 vec3 direction = directionOf(texel);
-                if (!onDisc(point, disc, distanceAlong(disc, direction) * direction, kHole)) point = kVplNothing;
+                if (!onDisc(point, disc, distanceAlong(disc, direction) * direction, kHole)) point = kNothing;
             }
         }
-        vplMaps[mapStart + texel] = point == kVplNothing ? kVplNothing : vplPoints[point].triangle;
+        vplMaps[mapStart + texel] = point == kNothing ? kNothing : vplPoints[point].triangle;
     }
 }
 
@@ -238,7 +240,7 @@ void main() {
     uint texels = vpl.mapSide * vpl.mapSide;
     mapStart = vplMapStart(light);
     origin = vplPlaces[light].position.xyz;
-    for (uint i = gl_LocalInvocationIndex; i < texels; i += kThreads) vplMaps[mapStart + i] = kVplNothing;
+    for (uint i = gl_LocalInvocationIndex; i < texels; i += kThreads) vplMaps[mapStart + i] = kNothing;
     if (gl_LocalInvocationIndex == 0u) {
         largeCount = 0u;
         nearestBits = floatBitsToUint(kFarthest);

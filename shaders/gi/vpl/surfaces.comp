@@ -11,7 +11,7 @@ layout(rgba32f) writeonly uniform image2D surfaceLight; // three parts; or nits
 
 SurfaceLight lightAt(ivec2 pixel, uvec2 number, out Receiver r) {
     SurfaceLight light = kDark;
-    if (!receiverAt(pixel, r)) return light;
+    if (!receiverAt(pixel, vpl.leastRoughness, r)) return light;
     uint first = uint(pixelNoise(number, 20u) * float(vpl.surfaceClasses)) % vpl.surfaceClasses;
     return gatherSurface(r, first, vpl.surfaceClasses, number);
 }

@@ -1,6 +1,7 @@
 // From the surfaces of surfaces.comp to every pixel: of the four nearest those count that lie in about the same plane and face the same way. A pixel that
 // none of them fits is left to it again: shaders that gather are large.
-#include "gi/vpl/receiver.glsl"
+#include "gi/shared/surface_light.glsl"
+#include "gi/vpl/params.glsl"
 #include "media/nearest_rays.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
@@ -44,7 +45,7 @@ void main() {
     ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
     if (any(greaterThanEqual(pixel, imageSize(surfaceRadiance)))) return;
     Receiver r;
-    if (!receiverAt(pixel, r)) {
+    if (!receiverAt(pixel, vpl.leastRoughness, r)) {
         imageStore(surfaceRadiance, pixel, vec4(vec3(0.0), 1.0));
         return;
     }
@@ -59,7 +60,7 @@ void main() {
         for (int i = 0; i < 4; ++i) {
             NearRay ray = nearRay(i, pixel, params, size, textureSize(gbufferDepth, 0));
             Receiver other;
-            if (!receiverAt(ray.pixel, other)) continue;
+            if (!receiverAt(ray.pixel, vpl.leastRoughness, other)) continue;
             float like = surfaceLikeness(r, other, distance) / (1.0 + depthApart(pixel, ray.pixel) / kDeep);
             float weight = rayWeight(like, ray.share);
             best = max(best, like);

@@ -142,8 +142,8 @@ Probe slabFluxProbe(double albedo, double anisotropy, double tau, std::optional<
                     Side side) {
     Probe probe;
     probe.stage = Stage::make(litFrom(albedo, anisotropy, tau, side));
-    // Half the paths find the sky by themselves: aiming at it would cost more than it saves.
-    probe.settings[0].aimAtLights = false;
+    // Half the paths find the sky by themselves: next-event estimation would cost more than it saves.
+    probe.settings[0].nextEventEstimation = false;
     probe.sample = [mu0](Tracers& tracers, Sampler& sampler) {
         TermLight light;
         tracers[0].trace(intoSlab(mu0, sampler), sampler, light);

@@ -1,56 +1,43 @@
-#include "volumetric_gi/vpl/traced_scene.h"
+#include "volumetric_gi/shared/traced_scene.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <cstddef>
 
-#include "framegraph/hash.h"
+#include "plugin/cache_key.h"
+#include "plugin/cached_upload.h"
 #include "tracing/proxy_media.h"
 
 namespace tyndall::volumetric_gi {
 namespace {
 
-static_assert(sizeof(gpu::VplTreeNode) == sizeof(tracing::TreeNode));
-static_assert(offsetof(gpu::VplTreeNode, next) == offsetof(tracing::TreeNode, next));
-static_assert(offsetof(gpu::VplTreeNode, triangle) == offsetof(tracing::TreeNode, triangle));
-static_assert(gpu::kVplNothing == tracing::TreeNode::kInner);
+static_assert(sizeof(gpu::TracedTreeNode) == sizeof(tracing::TreeNode));
+static_assert(offsetof(gpu::TracedTreeNode, next) == offsetof(tracing::TreeNode, next));
+static_assert(offsetof(gpu::TracedTreeNode, triangle) == offsetof(tracing::TreeNode, triangle));
+static_assert(gpu::kNoTriangle == tracing::TreeNode::kInner);
 
 /// Of surfaces, and of lights but for glowing media. Versions tell that nodes have moved, not which.
 struct Keys {
-    uint64_t shapes = fg::kHashStart; // surfaces, wherever they are
-    uint64_t surfaces = fg::kHashStart, lights = fg::kHashStart;
+    uint64_t shapes; // surfaces, wherever they are
+    uint64_t surfaces, lights;
 };
 
-uint64_t mixMatrix(uint64_t key, const dmat4& m) {
-    for (int i = 0; i < 16; ++i) key = fg::mixHash(key, std::bit_cast<uint64_t>(m[i / 4][i % 4]));
-    return key;
-}
-
 Keys keysOf(const Scene& scene, const dvec3& origin) {
-    Keys keys;
     const SceneVersions& now = scene.versions;
-    for (const uint64_t version : {now.structure, now.meshes, now.materials, now.textures})
-        keys.shapes = fg::mixHash(keys.shapes, version);
-    keys.surfaces = keys.shapes;
-    for (const uint64_t version : {now.lights, now.environment})
-        keys.lights = fg::mixHash(keys.lights, version);
-    for (int axis = 0; axis < 3; ++axis) {
-        const auto bits = std::bit_cast<uint64_t>(origin[axis]);
-        keys.surfaces = fg::mixHash(keys.surfaces, bits);
-        keys.lights = fg::mixHash(keys.lights, bits);
-    }
+    Keys keys{};
+    keys.shapes = cacheKey(now.structure, now.meshes, now.materials, now.textures);
+    keys.surfaces = cacheKey(keys.shapes, origin);
+    keys.lights = cacheKey(now.lights, now.environment, origin);
     const std::vector<dmat4> world = scene.worldTransforms();
     const std::vector<bool> visible = scene.worldVisibility();
     for (size_t i = 0; i < scene.nodes.size(); ++i) {
         const Node& node = scene.nodes[i];
         if (!node.meshes.empty()) {
-            keys.surfaces = fg::mixHash(mixMatrix(keys.surfaces, world[i]), visible[i]);
+            keys.surfaces = cacheKey(keys.surfaces, world[i], visible[i]);
             for (const dmat4& instance : node.instances)
-                keys.surfaces = mixMatrix(keys.surfaces, instance);
+                keys.surfaces = cacheKey(keys.surfaces, instance);
         }
-        if (node.light != kNone)
-            keys.lights = fg::mixHash(mixMatrix(keys.lights, world[i]), visible[i]);
+        if (node.light != kNone) keys.lights = cacheKey(keys.lights, world[i], visible[i]);
     }
     return keys;
 }
@@ -67,8 +54,8 @@ Bounds roughly(const Bounds& bounds) {
 
 } // namespace
 
-gpu::VplTriangle packTriangle(const tracing::SceneTriangle& from) {
-    gpu::VplTriangle triangle{};
+gpu::TracedTriangle packTriangle(const tracing::SceneTriangle& from) {
+    gpu::TracedTriangle triangle{};
     const dvec3 &corner = from.corners[0], a = from.corners[1] - corner,
                 b = from.corners[2] - corner;
     triangle.corner = vec4(vec3(corner), from.opaque() ? 1 : 0);
@@ -108,7 +95,7 @@ bool TracedScene::moveSurfaces(const Scene& scene, const dvec3& origin) {
     for (const uint32_t number : moved) {
         const tracing::MeshInstance& instance = surfaces.instances()[number];
         for (uint32_t i = 0; i < instance.mesh->indices.size() / 3; ++i) {
-            gpu::VplTriangle& triangle = triangles_[instance.firstTriangle + i];
+            gpu::TracedTriangle& triangle = triangles_[instance.firstTriangle + i];
             const uint64_t covers =
                 (uint64_t(triangle.coversHigh) << 32) | uint64_t(triangle.coversLow);
             triangle = packTriangle({surfaces.corners(number, i), covers});
@@ -124,34 +111,42 @@ bool TracedScene::moveSurfaces(const Scene& scene, const dvec3& origin) {
 
 void TracedScene::updateMedia(const Scene& scene, const dvec3& origin, bool guessed) {
     scene_.lights.reset(); // keeps references to media
-    if (!guessed) {
-        scene_.media = std::make_unique<tracing::MediaField>(scene, origin);
-        media_.reset();
-        return;
+    std::unique_ptr<tracing::MediaField> guess = std::move(guessed_ ? scene_.media : otherMedia_);
+    auto actual = std::make_unique<tracing::MediaField>(scene, origin);
+    if (guessed) {
+        tracing::ProxyMedia made = tracing::makeProxyMedia(scene, origin);
+        // Paths that are kept name the media that they went through: these stay while nothing about them changes.
+        if (!guess || made.hash != guessHash_)
+            guess = std::make_unique<tracing::MediaField>(std::move(made.field));
+        guessHash_ = made.hash;
     }
-    tracing::ProxyMedia guess = tracing::makeProxyMedia(scene, origin);
-    // Walks that are kept name the media that they went through: these stay while nothing about them changes.
-    if (!media_ || guess.hash != guessHash_)
-        scene_.media = std::make_unique<tracing::MediaField>(std::move(guess.field));
-    guessHash_ = guess.hash;
-    media_ = std::make_unique<tracing::MediaField>(scene, origin);
+    guessed_ = guessed;
+    scene_.media = std::move(guessed ? guess : actual);
+    otherMedia_ = std::move(guessed ? actual : guess);
 }
 
-Result<void> TracedScene::update(const plugin::FrameInputs& inputs, bool guessed) {
+void TracedScene::updateContent(const Scene& scene, const dvec3& origin) {
+    content_ = scene.contentBounds();
+    if (!content_.empty()) {
+        content_.minimum -= origin;
+        content_.maximum -= origin;
+    }
+    content_ = roughly(content_);
+}
+
+Result<void> TracedScene::update(const plugin::FrameInputs& inputs,
+                                 const TracedSceneOptions& options) {
     const Scene& scene = *inputs.whole;
     const SceneVersions& now = scene.versions;
     const dvec3 origin(inputs.origin[0], inputs.origin[1], inputs.origin[2]);
-    uint64_t changes = fg::mixHash(fg::kHashStart, guessed);
-    for (const uint64_t version : {now.structure, now.transforms, now.meshes, now.materials,
-                                   now.textures, now.lights, now.media, now.environment})
-        changes = fg::mixHash(changes, version);
-    for (const double coordinate : inputs.origin)
-        changes = fg::mixHash(changes, std::bit_cast<uint64_t>(coordinate));
-    if (whole_ == &scene && changes == changesKey_) return {};
+    const uint64_t key =
+        cacheKey(options.guessedMedia, now.structure, now.transforms, now.meshes, now.materials,
+                 now.textures, now.lights, now.media, now.environment, origin);
+    if (whole_ == &scene && key == key_) return {};
 
     const Keys keys = keysOf(scene, origin);
+    emission_.reset();
     if (whole_ != &scene || keys.surfaces != surfacesKey_) {
-        emission_.reset();
         scene_.lights.reset();
         const bool moved =
             whole_ == &scene && keys.shapes == shapesKey_ && moveSurfaces(scene, origin);
@@ -162,31 +157,29 @@ Result<void> TracedScene::update(const plugin::FrameInputs& inputs, bool guessed
             }
         }
     }
-    emission_.reset();
-    key_ = changes;
-    updateMedia(scene, origin, guessed);
+    updateMedia(scene, origin, options.guessedMedia);
     scene_.lights =
         std::make_unique<tracing::Lights>(scene, origin, *scene_.surfaces, *scene_.media);
-    Bounds content = scene.contentBounds();
-    if (!content.empty()) {
-        content.minimum -= origin;
-        content.maximum -= origin;
-    }
-    content = roughly(content);
-    content_ = content;
-    emission_ = std::make_unique<tracing::LightEmission>(scene_, content);
-    walksKey_ = key_;
-    if (guessed) {
-        walksKey_ = fg::mixHash(fg::mixHash(guessHash_, keys.surfaces), keys.lights);
-        for (const dvec3& end : {content.minimum, content.maximum})
-            for (int axis = 0; axis < 3; ++axis)
-                walksKey_ = fg::mixHash(walksKey_, std::bit_cast<uint64_t>(end[axis]));
-    }
+    updateContent(scene, origin);
+    emission_ = std::make_unique<tracing::LightEmission>(scene_, content_);
+    key_ = key;
+    walksKey_ = guessed_ ? cacheKey(guessHash_, keys.surfaces, keys.lights, content_) : key;
     whole_ = &scene;
-    changesKey_ = changes;
     surfacesKey_ = keys.surfaces;
     shapesKey_ = keys.shapes;
     return {};
+}
+
+const TracedBuffers& TracedScene::buffers(fg::FrameGraph& graph) {
+    if (buffers_.triangles) return buffers_;
+    buffers_.triangles = addCachedUpload(graph, "gi.traced.triangles", triangles_, surfacesKey_);
+    buffers_.tree = addCachedUpload(graph, "gi.traced.tree", tree_, surfacesKey_);
+    buffers_.params.treeSize = uint32_t(tree_.size());
+    return buffers_;
+}
+
+TracedBuffers readTraced(fg::Builder& builder, const TracedBuffers& buffers) {
+    return {builder.read(buffers.triangles), builder.read(buffers.tree), buffers.params};
 }
 
 } // namespace tyndall::volumetric_gi

@@ -1,0 +1,88 @@
+#pragma once
+// The scene as rays of the processor see it, with its triangles for shaders: made anew where it has changed. One instance serves all techniques of the plugin.
+
+#include "plugin/plugin_api.h"
+#include "shared/traced.h"
+#include "tracing/light_emission.h"
+#include "tracing/triangle_tree.h"
+
+namespace tyndall::volumetric_gi {
+
+/// As shaders read it.
+gpu::TracedTriangle packTriangle(const tracing::SceneTriangle& triangle);
+
+/// For shaders that include gi/shared/visibility.glsl.
+struct TracedBuffers {
+    fg::BufferHandle triangles, tree;
+    gpu::TracedParams params{};
+};
+
+/// Declares that a pass reads them; the result is what bindTraced() takes.
+[[nodiscard]] TracedBuffers readTraced(fg::Builder& builder, const TracedBuffers& buffers);
+
+template <typename Command> Command& bindTraced(Command& command, const TracedBuffers& buffers) {
+    return command.params(buffers.params, "Traced")
+        .bind("TracedTriangles", buffers.triangles)
+        .bind("TracedTree", buffers.tree);
+}
+
+struct TracedSceneOptions {
+    /// Paths are to go through media that small changes of the media do not change (tracing/proxy_media.h).
+    bool guessedMedia = false;
+};
+
+class TracedScene {
+public:
+    /// What has not changed since the last call stays, so that a second technique's call in a frame costs nothing. Where it asks for other options, media
+    /// and lights are made anew for it, but not surfaces; guessed media live on meanwhile, for paths that are kept name them.
+    /// Errors: the surfaces do not fit into memory.
+    Result<void> update(const plugin::FrameInputs& inputs, const TracedSceneOptions& options);
+
+    // As of the last update().
+
+    /// What paths go through.
+    [[nodiscard]] const tracing::TracerScene& scene() const { return scene_; }
+    [[nodiscard]] const tracing::LightEmission& emission() const { return *emission_; }
+    /// Around what is in the scene, without the landscape that it stands in; render space.
+    [[nodiscard]] const Bounds& content() const { return content_; }
+    /// Are the media there guessed?
+    [[nodiscard]] bool guessed() const { return guessed_; }
+    /// The media as they are.
+    [[nodiscard]] const tracing::MediaField& media() const {
+        return guessed_ ? *otherMedia_ : *scene_.media;
+    }
+    /// All triangles, and a tree over them, as shaders read them.
+    [[nodiscard]] const std::vector<gpu::TracedTriangle>& triangles() const { return triangles_; }
+    [[nodiscard]] const std::vector<tracing::TreeNode>& tree() const { return tree_; }
+    /// Are there triangles that rays pass parts of?
+    [[nodiscard]] bool hasHoles() const { return hasHoles_; }
+    /// Of everything that walks' courses follow from, of what they carry, and of the surfaces alone.
+    [[nodiscard]] uint64_t walksKey() const { return walksKey_; }
+    [[nodiscard]] uint64_t key() const { return key_; }
+    [[nodiscard]] uint64_t surfacesKey() const { return surfacesKey_; }
+
+    /// Triangles and tree on the GPU: uploaded for the first who asks in a frame, the same for all others.
+    [[nodiscard]] const TracedBuffers& buffers(fg::FrameGraph& graph);
+    /// Handles end with their frame: to be called when all of its passes have been added.
+    void endFrame() { buffers_ = {}; }
+
+private:
+    Result<void> updateSurfaces(const Scene& scene, const dvec3& origin);
+    bool moveSurfaces(const Scene& scene, const dvec3& origin);
+    void updateMedia(const Scene& scene, const dvec3& origin, bool guessed);
+    void updateContent(const Scene& scene, const dvec3& origin);
+
+    tracing::TracerScene scene_;
+    std::unique_ptr<tracing::MediaField>
+        otherMedia_; // where those in scene_ are guessed, the media as they are; else the last guess, if any
+    std::unique_ptr<tracing::LightEmission> emission_;
+    Bounds content_;
+    std::vector<gpu::TracedTriangle> triangles_;
+    std::vector<tracing::TreeNode> tree_;
+    TracedBuffers buffers_; // of this frame
+    bool hasHoles_ = false, guessed_ = false;
+    const Scene* whole_ = nullptr;
+    uint64_t key_ = 0, walksKey_ = 0, guessHash_ = 0, surfacesKey_ = 0, shapesKey_ = 0;
+};
+
+} // namespace tyndall::volumetric_gi
