@@ -27,22 +27,19 @@ vec3 albedoOf(Segment s) {
 
 vec3 scatteredTwice(Ray ray, float distance, uvec2 pixel) {
     vec3 sum = vec3(0.0);
-    vec3 before = vec3(0.0); // optical depth
-    float t, end;
-    if (!mediaExtent(ray, distance, t, end)) return sum;
+    March march;
+    if (!beginMarch(ray, distance, march)) return sum;
     vec3 noise = vec3(pixelNoise(pixel, 0u), pixelNoise2(pixel, 1u));
     vec2 turn = pixelNoise2(pixel, 2u);
     uint environment = uint(pixelNoise(pixel, 3u) * float(mediaHeader.environmentStride));
-    float opaque = -log(max(mediaHeader.minTransmittance, 1e-30));
-    for (int i = 0; i < kMostSegments && t < end && minimumOf(before) < opaque; ++i) {
-        Segment s = marchSegment(ray, t, end);
-        t = s.start + s.size;
+    Segment s;
+    while (nextSegment(ray, march, s)) {
         if (s.scatters) {
             vec3 once = segmentInScatter(ray, s, params.lightCount, noise, environment);
             vec3 around = albedoOf(s) * opacityAround(ray.origin + ray.direction * (s.start + 0.5 * s.size), turn);
-            sum += exp(-before) * once * around;
+            sum += exp(-march.before) * once * around;
         }
-        before = min(before + s.depth, vec3(kOpaque));
+        // Golden ratio and its generalisation to two dimensions: neighbouring segments differ as much as they can.
         noise = fract(noise + vec3(0.61803399, 0.75487767, 0.56984029));
         turn = fract(turn + vec2(0.75487767, 0.56984029));
         ++environment;
