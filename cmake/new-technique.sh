@@ -3,8 +3,8 @@
 set -euo pipefail
 cd "$(dirname "$0")/.."
 name=${1:-}
-if ! [[ $name =~ ^[a-z][a-z0-9_]*$ ]]; then
-    echo "usage: cmake/new-technique.sh NAME, where NAME is made of a-z, 0-9 and _ and starts with a letter" >&2
+if ! [[ $name =~ ^[a-z][a-z0-9]*(_[a-z0-9]+)*$ ]]; then
+    echo "usage: cmake/new-technique.sh NAME, where NAME is made of words of a-z and 0-9 with _ between, and starts with a letter" >&2
     exit 2
 fi
 type=$(sed -E 's/(^|_)([a-z0-9])/\U\2/g' <<< "$name") # two_words: TwoWords
