@@ -187,9 +187,8 @@ std::vector<TermSet> setsOf(const Technique& technique) {
         sets = {kIndirect, terms(Term::LSSE, Term::LSVE), terms(Term::LVSE, Term::LVVE),
                 terms(Term::LXSSE, Term::LXSVE), terms(Term::LXVSE, Term::LXVVE)};
     for (TermSet& set : sets) set &= technique.claims;
-    std::sort(sets.begin(), sets.end(), [](TermSet a, TermSet b) {
-        return __builtin_popcount(a) > __builtin_popcount(b);
-    });
+    std::sort(sets.begin(), sets.end(),
+              [](TermSet a, TermSet b) { return __builtin_popcount(a) > __builtin_popcount(b); });
     return sets;
 }
 
@@ -210,10 +209,11 @@ void expectNear(const ReferenceTerms& reference, const Image& ours, TermSet give
             .relmse;
     const double energy = compareImages(ours, reference.sum(given)).value().energy;
     printf("%s: relmse %.4f, energy %.4f\n", termNames(given).c_str(), relmse, energy);
-    // Typical is not the worst: twice as much in one scene. The reference's layers have some 0.02 of noise themselves, 1,024 samples a pixel.
+    // What is declared is typical of medium quality: twice as much at low, in this scene. The reference's layers have some 0.02 of noise themselves, 1,024
+    // samples a pixel.
     EXPECT_LT(relmse, 2 * declared + 0.02) << termNames(given);
-    // As if all pixels erred to one side.
-    EXPECT_NEAR(energy, 1, std::sqrt(2 * declared)) << termNames(given);
+    // The whole may be off as if all pixels erred to one side; a part by half of what one has that is missing or counted twice.
+    EXPECT_NEAR(energy, 1, given == claims ? std::sqrt(2 * declared) : 0.5) << termNames(given);
     EXPECT_LT(2 * declared, 0.9) << "a black picture has 1: who claims must be nearer";
 }
 
@@ -224,7 +224,6 @@ TEST_P(TechniqueLaws, EachClaimIsNearTheReference) {
         const TermSet surfaces = given & kIndirectOnSurfaces, media = given & kIndirectInMedia;
         if (seen.count(surfaces) && seen.count(media)) continue;
         RenderOptions asked = options(given);
-        asked.quality = Quality::Medium; // that of which it says its error
         asked.width = ReferenceTerms::kWidth;
         asked.height = ReferenceTerms::kHeight;
         const Rendered ours = sharedRenderer().render(reference.scene(), asked);

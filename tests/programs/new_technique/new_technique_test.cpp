@@ -52,13 +52,13 @@ TEST(NewTechnique, AddsFilesAndTwoEntriesAndTouchesNothingElse) {
         else if (textOf(entry.path()) != textOf(sourceDir() / name))
             changed.insert(name.string());
     }
-    EXPECT_THAT(added, ::testing::ElementsAre("docs/techniques/two_fold.md",
-                                              "plugins/volumetric_gi/two_fold/two_fold_technique.cpp",
-                                              "plugins/volumetric_gi/two_fold/two_fold_technique.h",
-                                              "shaders/gi/two_fold/march.comp",
-                                              "shaders/shared/two_fold.h"));
-    EXPECT_THAT(changed, ::testing::ElementsAre("plugins/volumetric_gi/plugin.cpp",
-                                                "shaders/variants.txt"));
+    EXPECT_THAT(added, ::testing::ElementsAre(
+                           "docs/techniques/two_fold.md",
+                           "plugins/volumetric_gi/two_fold/two_fold_technique.cpp",
+                           "plugins/volumetric_gi/two_fold/two_fold_technique.h",
+                           "shaders/gi/two_fold/march.comp", "shaders/shared/two_fold.h"));
+    EXPECT_THAT(changed,
+                ::testing::ElementsAre("plugins/volumetric_gi/plugin.cpp", "shaders/variants.txt"));
     EXPECT_THAT(textOf(copy / "plugins/volumetric_gi/plugin.cpp"), HasSubstr("    X(TwoFold)\n"));
     for (const std::string& file : added)
         EXPECT_EQ(textOf(copy / file).find('@'), std::string::npos) << "left open in " << file;
@@ -69,8 +69,7 @@ TEST(NewTechnique, RefusesNamesThatCannotBe) {
     for (const char* name : {"", "Two", "2fold", "two-fold", "two__fold", "../two", "octaves",
                              "shared", "traced", "none"})
         EXPECT_EQ(newTechnique(copy, name).status, 2) << name;
-    EXPECT_EQ(textOf(copy / "shaders/variants.txt"),
-              textOf(sourceDir() / "shaders/variants.txt"));
+    EXPECT_EQ(textOf(copy / "shaders/variants.txt"), textOf(sourceDir() / "shaders/variants.txt"));
     EXPECT_THAT(newTechnique(copy, "octaves").err, HasSubstr("exists already"));
 }
 
@@ -113,9 +112,9 @@ std::map<std::string, std::set<std::string>> judge(const std::string& filter) {
     const fs::path report = scratchDir("laws") / "report.json";
     ProcessOptions options;
     options.timeoutSeconds = 600; // a busy machine, and shaders that no test has compiled yet
-    const ProcessResult judged = run(
-        {TECHNIQUE_LAWS, "--gtest_filter=" + filter, "--gtest_output=json:" + report.string()},
-        options);
+    const ProcessResult judged =
+        run({TECHNIQUE_LAWS, "--gtest_filter=" + filter, "--gtest_output=json:" + report.string()},
+            options);
     std::map<std::string, std::set<std::string>> broken;
     std::string why;
     EXPECT_TRUE(endedByItself(judged, why)) << why;
