@@ -1,4 +1,4 @@
-// Light propagation volumes in pictures: laws that need no reference.
+// Light propagation volumes in pictures: what is theirs alone. technique_laws_test.cpp has what holds for all techniques.
 
 #include <cmath>
 
@@ -11,22 +11,6 @@
 
 namespace tyndall::test {
 namespace {
-
-TEST(Lpv, AClosedRoomStaysDark) {
-    // Walls far thinner than a cell of the lattice (0.6 m), and as thick as half of one.
-    for (const double thickness : {0.02, 0.3})
-        for (const double angle : {0.0, 0.3}) {
-            const std::vector<std::string> settings = {"gi.lpv.resolution=24", "gi.lpv.rsmSize=64"};
-            const double inside =
-                indirectMean("lpv", sceneFromJson(sealedRoom(thickness, angle, true)), settings);
-            const double outside =
-                indirectMean("lpv", sceneFromJson(sealedRoom(thickness, angle, false)), settings);
-            printf("walls of %.2f m, turned by %.1f: inside %.2e of outside\n", thickness, angle,
-                   inside / outside);
-            EXPECT_GT(outside, 1);
-            EXPECT_LT(inside, 1e-3 * outside);
-        }
-}
 
 TEST(Lpv, AFloorUnderFogGetsWhatTheTablesSay) {
     // rt-tables.csv, slab-flux, τ 4, isotropic, collimated µ0 = 1: T less e⁻⁴, of the sun's light. Cells are 1.4 free paths, so that what is between
@@ -85,59 +69,6 @@ TEST(Lpv, FewerRaysShowTheSameMedia) {
         EXPECT_LT(found.relmse, 0.001) << resolution;
         // A weighted mean of rays gives and takes alike, but at the picture's and the fog's rims: one pixel in 50 here.
         EXPECT_NEAR(found.energy, 1, 0.005) << resolution;
-    }
-}
-
-TEST(Lpv, LightThatDoublesDoublesThePicture) {
-    const std::string fog =
-        R"({"name": "fog", "medium": {"type": "homogeneous", "shape": "box", "size": [4, 3, 4], "scattering": [0.3, 0.3, 0.3],
-        "absorption": [0, 0.1, 0.2], "anisotropy": 0.5}, "translation": [0, 1.5, 0]},)";
-    const std::vector<std::string> settings = {"gi.lpv.resolution=12", "gi.lpv.rsmSize=64"};
-    // A power of two changes no digit anywhere, not even where light is counted in fixed point.
-    const double one = indirectMean("lpv", sceneFromJson(corner(50, fog)), settings);
-    EXPECT_GT(one, 0);
-    EXPECT_EQ(indirectMean("lpv", sceneFromJson(corner(100, fog)), settings), 2 * one);
-    for (const double light : {1e-15, 1e15})
-        EXPECT_NEAR(indirectMean("lpv", sceneFromJson(corner(light, fog)), settings) / light * 50 /
-                        one,
-                    1, 1e-4)
-            << light;
-}
-
-TEST(Lpv, AMediumThatIsNothingChangesNothing) {
-    const std::string nothing =
-        R"({"name": "fog", "medium": {"type": "homogeneous", "shape": "box", "size": [4, 3, 4], "scattering": [0, 0, 0],
-        "absorption": [0, 0, 0]}, "translation": [0, 1.5, 0]},)";
-    RenderOptions options;
-    options.gi = "lpv";
-    options.terms = kIndirectOnSurfaces;
-    options.settings = {"gi.lpv.resolution=12", "gi.lpv.rsmSize=64"};
-    const Rendered with = sharedRenderer().render(sceneFromJson(corner(50, nothing)), options),
-                   without = sharedRenderer().render(sceneFromJson(corner(50, "")), options);
-    EXPECT_GT(meanOf(without.beauty), 0);
-    EXPECT_EQ(with.beauty.pixels, without.beauty.pixels);
-}
-
-TEST(Lpv, ALightThatGoesOutLeavesNothing) {
-    const std::vector<std::string> settings = {"gi.lpv.resolution=12", "gi.lpv.rsmSize=64"};
-    EXPECT_GT(indirectMean("lpv", sceneFromJson(corner(50, "")), settings), 0);
-    EXPECT_EQ(indirectMean("lpv", sceneFromJson(corner(0, "")), settings), 0);
-}
-
-TEST(Lpv, APictureDependsOnNothingThatWasBefore) {
-    const std::string fog =
-        R"({"name": "fog", "medium": {"type": "homogeneous", "shape": "box", "size": [4, 3, 4], "scattering": [0.3, 0.3, 0.3],
-        "absorption": [0, 0.1, 0.2]}, "translation": [0, 1.5, 0]},)";
-    RenderOptions options;
-    options.gi = "lpv";
-    options.terms = kIndirect;
-    options.settings = {"gi.lpv.resolution=12", "gi.lpv.rsmSize=64"};
-    const Scene bright = sceneFromJson(corner(50, fog)), dim = sceneFromJson(corner(3, "")),
-                narrow = sceneFromJson(sealedRoom(0.3, 0, true));
-    const Image first = sharedRenderer().render(bright, options).beauty;
-    for (const Scene* between : {&dim, &narrow}) {
-        sharedRenderer().render(*between, options);
-        EXPECT_EQ(sharedRenderer().render(bright, options).beauty.pixels, first.pixels);
     }
 }
 

@@ -6,7 +6,6 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "core/image_metrics.h"
 #include "gi_scenes.h"
 #include "support/render.h"
 
@@ -79,23 +78,6 @@ TEST(VplHazards, LightsInOnePlaceAreOneLight) {
     printf("lights in one place: %.4f of the closed form\n", found / expected);
     // Powers of walks are squares of even numbers: a relative variance of 0.8. And 1 % of light comes back from the screen.
     EXPECT_NEAR(found / expected, 1, 4 * std::sqrt(0.8 / kWalks) + 0.01);
-}
-
-TEST(VplHazards, BrightLampsAreDimOnesTimesTheirPower) {
-    const std::string fog =
-        R"({"name": "fog", "medium": {"type": "homogeneous", "shape": "box", "size": [4, 3, 4], "scattering": [0.3, 0.3, 0.3],
-        "absorption": [0, 0.1, 0.2], "anisotropy": 0.5}, "translation": [0, 1.5, 0]},)";
-    const std::vector<std::string> settings = {"gi.vpl.walks=64"};
-    Image one = pictureOf(corner(1, fog), settings);
-    const Image million = pictureOf(corner(1e6, fog), settings),
-                power = pictureOf(corner(1 << 20, fog), settings);
-    // The chance by which a walk goes on is a quotient of powers: its last digit may decide otherwise, once in 1e7 or so. Not where only exponents change.
-    for (float& value : one.pixels) value *= 1 << 20;
-    EXPECT_EQ(power.pixels, one.pixels);
-    for (float& value : one.pixels) value *= 1e6f / (1 << 20);
-    const ImageMetrics found = compareImages(million, one).value();
-    EXPECT_LT(found.relmse, 1e-8);
-    EXPECT_NEAR(found.energy, 1, 1e-5);
 }
 
 TEST(VplHazards, SharpPhaseFunctions) {

@@ -1,6 +1,7 @@
 #include "support/render.h"
 
 #include <cmath>
+#include <cstdlib>
 #include <fstream>
 #include <gtest/gtest.h>
 
@@ -35,6 +36,8 @@ TestRenderer::TestRenderer(gl::Backend backend, const RendererOptions& options)
     : context_(createContext(backend)) {
     RendererOptions withPlugins = options;
     withPlugins.builtinPlugins = plugin::builtinPlugins();
+    if (const char* file = std::getenv("TYNDALL_TEST_PLUGIN"))
+        withPlugins.pluginFiles.emplace_back(file);
     Result<std::unique_ptr<Renderer>> renderer = Renderer::create(context_, withPlugins);
     if (!renderer) throw std::runtime_error(renderer.message());
     renderer_ = std::move(renderer).value();
@@ -48,6 +51,7 @@ TestRenderer::~TestRenderer() {
 Rendered TestRenderer::render(const Scene& scene, const RenderOptions& options) {
     context_.makeCurrent();
     renderer_->settings().resetAll();
+    if (options.quality) renderer_->settings().applyPreset(*options.quality);
     if (Result<void> done = renderer_->settings().set("gi.technique", options.gi); !done)
         throw std::runtime_error(done.message());
     for (const std::string& setting : options.settings)

@@ -3,6 +3,7 @@
 
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -16,6 +17,7 @@ struct RenderOptions {
     int width = 32, height = 32;
     int frames = 1;                    // averaged when above 1 (converge mode)
     bool converge = false;             // even for one frame
+    std::optional<Quality> quality;    // a preset, before the settings
     std::vector<std::string> settings; // KEY=VALUE
     std::string gi = "none";
     TermSet terms = kAllTerms;
@@ -38,7 +40,7 @@ struct Rendered {
 };
 
 /// One GL context of a back end and one renderer in it, made when first asked for and kept for the process.
-/// Fails the test on high-severity GL messages and on invalid pixels.
+/// Fails the test on high-severity GL messages and on invalid pixels. Loads the plugin that $TYNDALL_TEST_PLUGIN names, if it names one.
 class TestRenderer {
 public:
     explicit TestRenderer(gl::Backend backend = gl::Backend::Egl,

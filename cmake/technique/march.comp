@@ -1,0 +1,56 @@
+// LVVE from LVE: what a segment scatters once, times the part that the media around it scatter back into it and on to the eye.
+#define MARCH_PHASE_GROUPS PHASE_GROUPS
+#include "media/march.glsl"
+#include "shared/@name@.h"
+
+layout(local_size_x = 8, local_size_y = 8) in;
+
+layout(std140) uniform Params { @Name@Params params; };
+uniform sampler2D depth;
+layout(rgba32f) uniform writeonly image2D inScatter;
+
+/// Of all directions the mean part of light that the media stop: 0 in empty space, 1 deep inside of a cloud.
+vec3 opacityAround(vec3 position, vec2 turn) {
+    vec3 sum = vec3(0.0);
+    for (uint i = 0u; i < params.directions; ++i) {
+        vec3 direction = directionOnSphere(fract(turn + vec2(float(i) / float(params.directions), 0.61803399 * float(i))));
+        sum += 1.0 - exp(-opticalDepthAlong(position, direction, kInfiniteDistance));
+    }
+    return sum / float(params.directions);
+}
+
+vec3 albedoOf(Segment s) {
+    vec3 scattering = vec3(0.0);
+    for (int g = 0; g < MARCH_PHASE_GROUPS; ++g) scattering += s.scattering[g];
+    return scattering / max(s.depth, vec3(1e-30));
+}
+
+vec3 scatteredTwice(Ray ray, float distance, uvec2 pixel) {
+    vec3 sum = vec3(0.0);
+    March march;
+    if (!beginMarch(ray, distance, march)) return sum;
+    vec3 noise = vec3(pixelNoise(pixel, 0u), pixelNoise2(pixel, 1u));
+    vec2 turn = pixelNoise2(pixel, 2u);
+    uint environment = uint(pixelNoise(pixel, 3u) * float(mediaHeader.environmentStride));
+    Segment s;
+    while (nextSegment(ray, march, s)) {
+        if (s.scatters) {
+            vec3 once = segmentInScatter(ray, s, params.lightCount, noise, environment);
+            vec3 around = albedoOf(s) * opacityAround(ray.origin + ray.direction * (s.start + 0.5 * s.size), turn);
+            sum += exp(-march.before) * once * around;
+        }
+        // Golden ratio and its generalisation to two dimensions: neighbouring segments differ as much as they can.
+        noise = fract(noise + vec3(0.61803399, 0.75487767, 0.56984029));
+        turn = fract(turn + vec2(0.75487767, 0.56984029));
+        ++environment;
+    }
+    return sum;
+}
+
+void main() {
+    ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
+    if (any(greaterThanEqual(pixel, imageSize(inScatter)))) return;
+    vec2 centre = vec2(pixel) + 0.5;
+    float distance = rayDistanceFromDepth(centre, texelFetch(depth, pixel, 0).r);
+    imageStore(inScatter, pixel, vec4(scatteredTwice(cameraRay(centre), distance, uvec2(pixel)), 1.0));
+}
