@@ -401,7 +401,6 @@ fg::TextureHandle VplTechnique::addDebugView(fg::FrameGraph& graph,
     const fg::TextureHandle shown =
         addVplShow(graph, inputs, used_, buffers_, gather_.params, radius, gathered_, color);
     buffers_ = {}; // of this frame alone
-    scene_.endFrame();
     gathered_ = {};
     return shown;
 }
