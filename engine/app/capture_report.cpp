@@ -46,6 +46,9 @@ void CaptureReport::setPlan(const FramePlan& plan) {
     why = plan.why;
     claims = plan.rendered;
     missing = plan.missing;
+    for (uint32_t i = 0; i < kTermCount; ++i)
+        if (plan.missing & plan.rendered & bit(Term(i)))
+            missingIn[std::string(termName(Term(i)))] = mediaNames(plan.missingIn(Term(i)));
 }
 
 void CaptureReport::setPasses(const fg::FrameReport& report) {
@@ -108,6 +111,11 @@ std::string CaptureReport::toJson() const {
     json.member("technique", technique).member("why", why);
     writeTerms(json, "claims", claims);
     writeTerms(json, "missing", missing);
+    if (!missingIn.empty()) {
+        json.key("missing_in").compact().beginObject();
+        for (const auto& [term, media] : missingIn) json.member(term, media);
+        json.endObject();
+    }
     json.key("passes").beginArray();
     for (const Pass& pass : passes) writePass(json, pass);
     json.endArray();

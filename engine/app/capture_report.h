@@ -29,6 +29,8 @@ struct CaptureReport {
     int width = 0, height = 0;
     std::string technique, why;
     TermSet claims = 0, missing = 0;
+    /// Terms that are missing in some of the scene's kinds of media alone → those kinds.
+    std::map<std::string, std::string> missingIn;
     std::vector<Pass> passes;
     std::vector<Frame> frames;
     double startupMs = 0;

@@ -67,6 +67,7 @@ void keepStatistics(const plugin::FrameOutputs& outputs, FrameImages& frame) {
 plugin::FrameInputs inputsFor(const FrameOrder& order, int technique, plugin::FrameInputs inputs) {
     inputs.terms = order.plan->termsOf(technique);
     inputs.kinds = order.plan->mediaOf(technique);
+    inputs.march.media = inputs.kinds;
     return inputs;
 }
 

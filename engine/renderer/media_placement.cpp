@@ -185,6 +185,17 @@ bool onPathOf(const gpu::LightData& light, const Bounds& medium, const Bounds& s
 
 } // namespace
 
+MediaSet mediaSetOf(const Medium& medium) {
+    switch (medium.kind) {
+    case MediumKind::Everywhere:
+    case MediumKind::Box:
+    case MediumKind::Sphere: return kShapeMedia;
+    case MediumKind::Height: return kHeightMedia;
+    case MediumKind::Grid: return medium.particles ? kParticleMedia : kGridMedia;
+    }
+    return 0;
+}
+
 std::vector<PlacedMedium> placeMedia(const Scene& scene, const dvec3& renderOrigin,
                                      std::vector<std::string>& notes) {
     std::vector<PlacedMedium> placed;
@@ -197,6 +208,7 @@ std::vector<PlacedMedium> placeMedia(const Scene& scene, const dvec3& renderOrig
         PlacedMedium entry;
         entry.medium = &medium;
         entry.data.kind = uint32_t(medium.kind);
+        entry.data.set = mediaSetOf(medium);
         entry.data.phase = uint32_t(medium.phase);
         entry.data.scattering = vec4(medium.scattering, medium.anisotropy);
         entry.data.extinction = vec4(medium.extinction(), float(medium.scaleHeight));

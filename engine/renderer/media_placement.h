@@ -9,6 +9,7 @@
 #include "scene/scene.h"
 #include "shared/light.h"
 #include "shared/medium.h"
+#include "transport/media_kinds.h"
 
 namespace tyndall {
 
@@ -18,6 +19,9 @@ struct PlacedMedium {
     Bounds bounds; // render space; without end for Everywhere and Height
     const Medium* medium = nullptr;
 };
+
+/// The kind of a medium as techniques tell them apart: one bit.
+[[nodiscard]] MediaSet mediaSetOf(const Medium& medium);
 
 /// Every visible medium that absorbs, scatters or emits, those with grids last. Transforms are computed in double precision.
 /// Media that cannot be rendered are left out, with a sentence each in `notes`.

@@ -5,6 +5,7 @@
 
 #include "core/log.h"
 #include "renderer/inspect_pass.h"
+#include "renderer/media_placement.h"
 #include "renderer/renderer_impl.h"
 #include "renderer/view.h"
 
@@ -12,17 +13,6 @@ namespace tyndall {
 namespace {
 
 constexpr int kLargestPicture = 16384; // pixels along an edge: what every GL 4.5 driver takes
-
-MediaSet kindOf(const Medium& medium) {
-    switch (medium.kind) {
-    case MediumKind::Everywhere:
-    case MediumKind::Box:
-    case MediumKind::Sphere: return kShapeMedia;
-    case MediumKind::Height: return kHeightMedia;
-    case MediumKind::Grid: return medium.particles ? kParticleMedia : kGridMedia;
-    }
-    return 0;
-}
 
 SceneTraits traitsOf(const Scene& scene, const GpuScene& surfaces, const LightSystem& lights,
                      bool mediaEnabled) {
@@ -35,7 +25,7 @@ SceneTraits traitsOf(const Scene& scene, const GpuScene& surfaces, const LightSy
     if (!mediaEnabled) return traits;
     traits.kinds = 0;
     for (const Medium& medium : scene.media) {
-        if (maximumOf(medium.scattering) > 0) traits.kinds |= kindOf(medium);
+        if (maximumOf(medium.scattering) > 0) traits.kinds |= mediaSetOf(medium);
         traits.media |= maximumOf(medium.extinction()) > 0 || maximumOf(medium.emission) > 0;
         traits.scatteringMedia |= maximumOf(medium.scattering) > 0;
         traits.lights |=

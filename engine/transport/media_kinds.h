@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <string>
+#include <string_view>
 
 namespace tyndall {
 
@@ -15,7 +16,9 @@ inline constexpr MediaSet kParticleMedia = 8; // clouds of particles
 inline constexpr uint32_t kMediaKindCount = 4;
 inline constexpr MediaSet kAllMedia = 15;
 
-/// "shapes, grids": in order; "" for none.
+/// "shapes,grids": in order; "" for none.
 std::string mediaNames(MediaSet media);
+/// One of the names; none of them gives 0.
+MediaSet mediaNamed(std::string_view name);
 
 } // namespace tyndall

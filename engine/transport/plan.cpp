@@ -52,6 +52,7 @@ MediaSet takenIn(const FramePlan& plan, Term term) {
 struct Assignment {
     TermSet terms;
     int owner;
+    MediaSet media = kAllMedia;
 };
 
 Result<Assignment> parseAssignment(std::string_view item, std::span<const Technique> techniques) {
@@ -59,8 +60,14 @@ Result<Assignment> parseAssignment(std::string_view item, std::span<const Techni
     if (equals == std::string_view::npos)
         return Error{"'" + std::string(item) +
                      "' is not an assignment: write TERM=TECHNIQUE, as in LVVE=octaves"};
-    const Result<TermSet> terms = parseTerms(item.substr(0, equals));
+    const size_t colon = std::min(item.find(':'), equals);
+    const Result<TermSet> terms = parseTerms(item.substr(0, colon));
     if (!terms) return terms.error();
+    MediaSet media = kAllMedia;
+    if (colon < equals) media = mediaNamed(item.substr(colon + 1, equals - colon - 1));
+    if (media == 0)
+        return Error{"'" + std::string(item) + "' names no kind of medium: there are " +
+                     mediaNames(kAllMedia)};
     const std::string_view name = item.substr(equals + 1);
     const int owner = findTechnique(name, techniques);
     if (owner == kNobody) return unknownTechnique(name, techniques);
@@ -69,7 +76,10 @@ Result<Assignment> parseAssignment(std::string_view item, std::span<const Techni
     if (*terms & ~claims)
         return Error{"technique '" + std::string(name) + "' does not compute " +
                      termNames(*terms & ~claims) + ": it claims " + termNames(claims)};
-    return Assignment{*terms, owner};
+    if (media != kAllMedia && (*terms & ~kTermsInMedia))
+        return Error{"'" + std::string(item) + "': " + termNames(*terms & ~kTermsInMedia) +
+                     " is seen on surfaces, not in a kind of medium"};
+    return Assignment{*terms, owner, media};
 }
 
 /// Gives the terms of one item to its technique, in the kinds of media that no other has.
@@ -79,8 +89,10 @@ Result<void> take(FramePlan& plan, const Assignment& item, std::span<const Techn
     for (uint32_t i = 0; i < kTermCount; ++i) {
         const Term term = Term(i);
         if (!(item.terms & bit(term))) continue;
-        const MediaSet taken = takenIn(plan, term), rest = technique.media & ~taken;
+        const MediaSet taken = takenIn(plan, term), rest = technique.media & item.media & ~taken;
         const bool shares = (bit(term) & kTermsInMedia) != 0 && technique.separatesMedia;
+        if (taken == 0 && rest != technique.media && !technique.separatesMedia)
+            return Error{"technique '" + technique.name + "' cannot leave out a kind of medium"};
         if (taken != 0 && (!shares || rest == 0))
             return Error{"term " + std::string(termName(term)) +
                          " is given to two techniques: each term is computed once"};
@@ -101,7 +113,8 @@ Result<void> assign(FramePlan& plan, std::string_view list, std::span<const Tech
     }
     // One that computes a term in few kinds of media comes before one that takes the rest.
     const auto kinds = [&](const Assignment& item) {
-        return item.owner < 0 ? 0 : __builtin_popcount(techniques[size_t(item.owner)].media);
+        if (item.owner < 0) return 0;
+        return __builtin_popcount(item.media & techniques[size_t(item.owner)].media);
     };
     std::stable_sort(items.begin(), items.end(),
                      [&](const auto& a, const auto& b) { return kinds(a) < kinds(b); });

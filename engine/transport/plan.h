@@ -74,6 +74,7 @@ struct FramePlan {
 TermSet possibleTerms(const SceneTraits& traits);
 
 /// `gi` is auto, none, a technique's name, or a list TERM=TECHNIQUE,… of indirect terms: those that it does not name are not rendered.
+/// TERM:MEDIA=TECHNIQUE gives a term in one kind of medium (shapes, height, grids, particles): LVVE:particles=network,LVVE=lpv.
 /// Direct terms stay with the engine's own passes (`direct`), unless the list gives one to a technique that claims it.
 /// Errors name the unknown word and list what there is, or say which terms a technique claims, or computes only together.
 Result<FramePlan> makePlan(std::string_view gi, TermSet wanted,

@@ -10,15 +10,21 @@ namespace tyndall {
 namespace {
 constexpr std::array<std::string_view, kTermCount> kNames = {
     "LE", "LSE", "LVE", "LSSE", "LVSE", "LSVE", "LVVE", "LXSSE", "LXVSE", "LXSVE", "LXVVE"};
+constexpr std::array<std::string_view, kMediaKindCount> kMediaNames = {"shapes", "height", "grids",
+                                                                       "particles"};
 }
 
 std::string mediaNames(MediaSet media) {
-    static constexpr std::string_view kMediaNames[kMediaKindCount] = {"shapes", "height fog",
-                                                                      "grids", "particles"};
     std::string names;
     for (uint32_t i = 0; i < kMediaKindCount; ++i)
-        if (media & (1u << i)) names += (names.empty() ? "" : ", ") + std::string(kMediaNames[i]);
+        if (media & (1u << i)) names += (names.empty() ? "" : ",") + std::string(kMediaNames[i]);
     return names;
+}
+
+MediaSet mediaNamed(std::string_view name) {
+    for (uint32_t i = 0; i < kMediaKindCount; ++i)
+        if (kMediaNames[i] == name) return 1u << i;
+    return 0;
 }
 
 std::string_view termName(Term term) { return kNames[uint32_t(term)]; }

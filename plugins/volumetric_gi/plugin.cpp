@@ -46,6 +46,11 @@ public:
     }
     uint32_t techniqueCount() const override { return uint32_t(techniques_.size()); }
     plugin::Technique* technique(uint32_t index) override { return techniques_[index].get(); }
+    fg::TextureHandle addPostPasses(fg::FrameGraph&, const plugin::FrameInputs&,
+                                    fg::TextureHandle color) override {
+        shared_.traced.endFrame();
+        return color;
+    }
     void destroy() override { delete this; }
 
 private:

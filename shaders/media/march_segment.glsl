@@ -183,6 +183,9 @@ float gridSegment(uint m, LocalRay ray, float t0, float t1, out vec2 ends) {
     return density * (t1 - t0);
 }
 
+/// The kinds of media whose scattering segments have; the others take light away all the same. A technique that computes light in some kinds alone sets it.
+uint marchedMedia = 0xffffffffu;
+
 /// Adds what medium `m` has in the segment.
 void addMedium(uint m, Ray ray, inout Segment s) {
     LocalRay local = localRay(media[m].localFromRender, ray.origin, ray.direction);
@@ -206,7 +209,7 @@ void addMedium(uint m, Ray ray, inout Segment s) {
     s.depth += extinction * integral;
     s.extinctionStart += meanOf(extinction) * ends.x;
     s.extinctionEnd += meanOf(extinction) * ends.y;
-    vec3 scattering = media[m].scattering.rgb;
+    vec3 scattering = (media[m].set & marchedMedia) != 0u ? media[m].scattering.rgb : vec3(0.0);
     s.scatters = s.scatters || maximumOf(scattering) > 0.0;
 #if MARCH_PHASE_GROUPS == 1
     s.scattering[0] += scattering * integral;

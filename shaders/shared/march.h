@@ -16,8 +16,8 @@ struct MarchParams {
     float depthTolerance;   // upsampling: relative difference of distance that halves a weight
     float transmittanceTolerance; // upsampling: difference of transmittance that halves a weight
     float refineWeight;     // upsampling: below this best weight a pixel is marched again
+    uint media;             // a bit for each kind (MediumData.set) of which the scattering counts: for techniques
     uint padding0;
-    uint padding1;
 };
 
 TYNDALL_SHARED_END

@@ -62,6 +62,10 @@ struct MediumData {
     uint phase;
     uint phaseGroup;
     float voxelSize;            // smallest edge of a voxel, metres; 0 for the others
+    uint set;                   // its kind as techniques tell media apart: a bit of MediaSet (transport/media_kinds.h)
+    uint padding0;
+    uint padding1;
+    uint padding2;
 };
 
 struct BrickData {

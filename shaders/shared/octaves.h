@@ -10,9 +10,9 @@ struct OctavesParams {
     float scatteringFactor;
     float extinctionFactor;
     float phaseFactor;
+    uint media; // as MarchParams.media
     uint padding0;
     uint padding1;
-    uint padding2;
 };
 
 TYNDALL_SHARED_END

@@ -44,6 +44,42 @@ TEST(Composition, ThreeTechniquesShareSixTermsAndEachImageIsThatOfItsTechniqueAl
         }
 }
 
+TEST(Composition, LightInTwoKindsOfMediaAddsUp) {
+    // A ball of fog in height fog: what a technique computes in either, with the other only in the way, is together what it computes in both.
+    const std::string both =
+        R"({"name": "ball", "medium": {"type": "homogeneous", "shape": "sphere", "size": [2, 2, 2], "scattering": [0.9, 0.6, 0.3],
+    "absorption": [0, 0.1, 0.2]}, "translation": [0, 1.2, 0]},
+    {"name": "haze", "medium": {"type": "homogeneous", "shape": "height", "scaleHeight": 1, "scattering": [0.2, 0.2, 0.2],
+    "absorption": [0, 0, 0]}},)";
+    const Scene scene = sceneFromJson(corner(50, both));
+    const auto light = [&](const std::string& technique, const std::string& media) {
+        RenderOptions options;
+        options.width = 24;
+        options.height = 16;
+        options.terms = technique == "octaves" ? terms(Term::LVVE, Term::LXVVE) : kIndirectInMedia;
+        std::string gi;
+        for (uint32_t t = 0; t < kTermCount; ++t)
+            if (options.terms & bit(Term(t)))
+                gi += (gi.empty() ? "" : ",") + std::string(termName(Term(t))) + media + "=" + technique;
+        options.gi = gi;
+        options.settings = {"gi.vpl.walks=16", "gi.vpl.mapSide=16", "gi.vpl.samples=256",
+                            "gi.vpl.march=full", "gi.vpl.classes=1", "gi.vpl.candidates=1",
+                            "gi.vpl.compensation=clamped", "gi.lpv.resolution=8",
+                            "gi.lpv.rsmSize=32", "gi.lpv.march=full", "octaves.count=2"};
+        return sharedRenderer().render(scene, options).beauty;
+    };
+    // To rounding. Virtual lights are gathered at points that are drawn by how much scatters there: 256 on a ray leave some noise.
+    for (const auto& [technique, relmse] : {std::pair("octaves", 1e-10), {"lpv", 1e-10}, {"vpl", 1e-3}}) {
+        const Image inBoth = light(technique, ""), inBall = light(technique, ":shapes"),
+                    inHaze = light(technique, ":height");
+        EXPECT_GT(meanOf(inBall), 0.05 * meanOf(inBoth)) << technique;
+        EXPECT_GT(meanOf(inHaze), 0.05 * meanOf(inBoth)) << technique;
+        Image sum = inBall;
+        for (size_t i = 0; i < sum.pixels.size(); ++i) sum.pixels[i] += inHaze.pixels[i];
+        EXPECT_LT(compareImages(sum, inBoth).value().relmse, relmse) << technique;
+    }
+}
+
 /// Every term given to `technique` alone, and the sum of their images.
 Image sumOfParts(const std::string& technique, const std::vector<Term>& parts) {
     Image sum;

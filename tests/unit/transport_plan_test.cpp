@@ -135,6 +135,20 @@ TEST(TransportPlan, OneKindOfMediumFromOneTechniqueAndTheRestFromAnother) {
     EXPECT_NE(uneven.message().find("the same kinds of media"), std::string::npos);
 }
 
+TEST(TransportPlan, AnAssignmentMayNameTheKindOfMedium) {
+    const FramePlan plan =
+        makePlan("LVVE:grids=fogonly,LVVE=lattice", kAllTerms, kTechniques, kEverything).value();
+    EXPECT_EQ(plan.mediaOf(2), kGridMedia);
+    EXPECT_EQ(plan.mediaOf(1), kAllMedia & ~kGridMedia);
+    const auto refusal = [](const char* gi) {
+        const Result<FramePlan> refused = makePlan(gi, kAllTerms, kTechniques, kEverything);
+        return refused.ok() ? std::string() : refused.message();
+    };
+    EXPECT_NE(refusal("LVVE:clouds=lattice").find("shapes,height,grids,particles"),
+              std::string::npos);
+    EXPECT_NE(refusal("LSSE:grids=lattice").find("on surfaces"), std::string::npos);
+}
+
 TEST(TransportPlan, WhatIsComputedInSomeMediaIsMissingInTheOthers) {
     SceneTraits traits = kEverything;
     traits.kinds = kParticleMedia | kHeightMedia;

@@ -181,7 +181,7 @@ const plugin::TechniqueInfo& LpvTechnique::info() const {
         .sets = kSets,
         .setCount = uint32_t(std::size(kSets)),
         .media = kAllMedia,
-        .separatesMedia = 0,
+        .separatesMedia = 1,
         .automatic = 0, // seconds a frame without a GPU: who wants it asks for it
         .cost = 3,
         .errorOnSurfaces = 0.15f,

@@ -6,6 +6,7 @@
 #include <span>
 
 #include "plugin/plugin_api.h"
+#include "volumetric_gi/shared/traced_scene.h"
 
 namespace tyndall::volumetric_gi {
 
@@ -16,6 +17,7 @@ enum class Mode : int32_t { Corrected = 0, Paper = 1 };
 struct SharedParts {
     plugin::Host* host = nullptr; // from the plugin's set-up on
     Mode mode = Mode::Corrected;
+    TracedScene traced; // update() it before use: once a frame that costs something
 };
 
 class GiTechnique : public plugin::Technique {

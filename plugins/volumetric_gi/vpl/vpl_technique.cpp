@@ -216,7 +216,8 @@ bool VplTechnique::followsWhatIsMissed(const plugin::FrameInputs& inputs) const 
     return used_.nearPaths > 0 && std::max(used_.clamp, used_.surfaceClamp) > 0 &&
            used_.fromSurfaces && used_.fromMedia &&
            used_.compensation == int32_t(gpu::kVplTraced) &&
-           used_.show != int32_t(gpu::kVplShowLost) && converges(inputs) && !scene_.guessed();
+           used_.show != int32_t(gpu::kVplShowLost) && converges(inputs) && !scene_.guessed() &&
+           (inputs.kinds & kAllMedia) == kAllMedia; // they see all media
 }
 
 void VplTechnique::makeNear(const plugin::FrameInputs& inputs) {
@@ -293,8 +294,9 @@ VplGather VplTechnique::gather(const plugin::FrameInputs& inputs) const {
     params.surfaceTerms =
         termBits(inputs.terms, {Term::LSSE, Term::LVSE, Term::LXSSE, Term::LXVSE});
     params.mediaTerms = termBits(inputs.terms, {Term::LSVE, Term::LVVE, Term::LXSVE, Term::LXVVE});
-    // The closed form takes all light around a point for one.
-    if (params.compensation == gpu::kVplClosedForm && params.mediaTerms != gpu::kVplAllTerms)
+    // The closed form takes all light around a point for one, and all media.
+    if (params.compensation == gpu::kVplClosedForm &&
+        (params.mediaTerms != gpu::kVplAllTerms || inputs.kinds != kAllMedia))
         params.compensation = gpu::kVplTraced;
     params.lightsOfScene = asPrinted() ? 0 : inputs.lights.lightCount;
     params.upToFreePath = asPrinted() ? 0 : 1;
@@ -318,7 +320,7 @@ const plugin::TechniqueInfo& VplTechnique::info() const {
         .sets = nullptr,
         .setCount = 0,
         .media = kAllMedia,
-        .separatesMedia = 0,
+        .separatesMedia = 1,
         .automatic = 0,
         .cost = 6,
         .errorOnSurfaces = 0.1f,
@@ -399,7 +401,6 @@ fg::TextureHandle VplTechnique::addDebugView(fg::FrameGraph& graph,
     const fg::TextureHandle shown =
         addVplShow(graph, inputs, used_, buffers_, gather_.params, radius, gathered_, color);
     buffers_ = {}; // of this frame alone
-    scene_.endFrame();
     gathered_ = {};
     return shown;
 }

@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "volumetric_gi/shared/gi_technique.h"
-#include "volumetric_gi/shared/traced_scene.h"
 #include "volumetric_gi/vpl/vpl_gather.h"
 #include "volumetric_gi/vpl/compensation_light.h"
 #include "volumetric_gi/vpl/vpl_settings.h"
@@ -38,7 +37,7 @@ private:
     [[nodiscard]] VplGather gather(const plugin::FrameInputs& inputs) const;
 
     VplSettings settings_{}, used_{}; // used_: in this frame, as gi.mode has it
-    TracedScene scene_;
+    TracedScene& scene_ = shared_.traced;
     VplSet set_;
     std::vector<uint32_t> maps_; // of rays
     SurfacePoints points_;       // for maps that are splatted

@@ -19,6 +19,7 @@ vec3 latticeScattered(Segment s, vec3 position, vec3 direction) {
 
 /// Nits that reach the ray's origin from up to `distance` metres.
 vec3 mediaLight(Ray ray, float distance, ivec2 pixel, uvec2 number) {
+    marchedMedia = params.media;
     vec3 sum = vec3(0.0);
     March march;
     Segment s;

@@ -13,6 +13,7 @@ layout(rgba32f) uniform writeonly image2D inScatter;
 void main() {
     ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
     if (any(greaterThanEqual(pixel, imageSize(inScatter)))) return;
+    marchedMedia = params.media;
     marchOctaves = MarchOctaves(1u, params.last, params.scatteringFactor, params.extinctionFactor, params.phaseFactor);
     vec2 centre = vec2(pixel) + 0.5;
     float distance = rayDistanceFromDepth(centre, texelFetch(depth, pixel, 0).r);

@@ -15,5 +15,6 @@ vec3 nearLightOf(ivec2 pixel, ivec2 size) {
 }
 
 vec3 mediaLight(Ray ray, float distance, ivec2 pixel, uvec2 number) {
+    marchedMedia = params.media;
     return lightScatteredAlong(ray, distance, number) + nearLightOf(pixel, textureSize(depth, 0));
 }

@@ -48,7 +48,10 @@ uint vplTermsOneStepOn(uint terms) { return (terms & (1u << kVplLaterOfMedia)) !
 /// A segment without length at a point: scattering coefficients in place of their integrals.
 Segment pointSegment(Ray ray, float at, float scale) {
     float size = max(1e-4 * scale, 1e-6 * (at + 1.0));
+    uint eyes = marchedMedia; // what counts is what the eye sees scattered, not where its light was scattered before
+    marchedMedia = 0xffffffffu;
     Segment s = marchSegment(Ray(ray.origin + ray.direction * (at - 0.5 * size), ray.direction), 0.0, size);
+    marchedMedia = eyes;
     for (int g = 0; g < MARCH_PHASE_GROUPS; ++g) s.scattering[g] /= s.size;
     s.depth = vec3(0.0);
     s.start = at;
