@@ -143,13 +143,16 @@ FrameImages recordFrame(fg::FrameGraph& graph, const FrameParts& parts, const Fr
     images.terms = addDirectTerms(graph, surfaces, march);
 
     // Indirect light, as far as techniques compute it.
+    plugin::SceneState state = order.sceneState;
+    // Only now is it known which media this frame has.
+    state.media = media.resources.count > 0 ? parts.media.version() : 0;
     const plugin::FrameInputs inputs{order.view,
                                images.gbuffer,
                                lights,
                                media.resources,
                                march.transmittance,
                                marchParams(*media.settings),
-                               order.sceneState,
+                               state,
                                parts.lights.lights().data(),
                                &parts.drawer,
                                order.scene,

@@ -45,17 +45,17 @@ TEST(TracedScene, TechniquesWithOtherOptionsShareSurfacesAndKeepTheGuessesOfMedi
     Scene scene = sceneFromJson(kRoomWithFog);
     const plugin::FrameInputs inputs = inputsOf(scene);
     TracedScene traced;
-    ASSERT_TRUE(traced.update(inputs, {.guessedMedia = true}).ok());
+    ASSERT_TRUE(traced.update(inputs, {.proxyMedia = true}).ok());
     const auto* const surfaces = traced.scene().surfaces.get();
-    const auto* const guess = traced.scene().media.get();
+    const auto* const proxies = traced.scene().media.get();
     const uint64_t walks = traced.walksKey();
-    EXPECT_NE(guess, &traced.media());
+    EXPECT_NE(proxies, &traced.media());
     ASSERT_TRUE(traced.update(inputs, {}).ok());
     EXPECT_EQ(traced.scene().media.get(), &traced.media());
-    EXPECT_NE(traced.scene().media.get(), guess);
-    ASSERT_TRUE(traced.update(inputs, {.guessedMedia = true}).ok());
+    EXPECT_NE(traced.scene().media.get(), proxies);
+    ASSERT_TRUE(traced.update(inputs, {.proxyMedia = true}).ok());
     EXPECT_EQ(traced.scene().surfaces.get(), surfaces);
-    EXPECT_EQ(traced.scene().media.get(), guess); // what kept walks name
+    EXPECT_EQ(traced.scene().media.get(), proxies); // what kept walks name
     EXPECT_EQ(traced.walksKey(), walks);
 }
 

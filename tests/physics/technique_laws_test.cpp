@@ -122,6 +122,25 @@ TEST_P(TechniqueLaws, ALightThatMovesTakesAllOfItsLightAlong) {
     EXPECT_EQ(render(scene).beauty.pixels, expected.pixels);
 }
 
+TEST_P(TechniqueLaws, AMediumThatChangesOrGoesLeavesNothing) {
+    const auto thin = [](Scene& scene, float factor) {
+        Medium medium = scene.media.at(0);
+        medium.scattering *= factor;
+        medium.absorption *= factor;
+        setMedium(scene, 0, medium);
+    };
+    Scene scene = sceneFromJson(corner(50, kFog));
+    render(scene);
+    for (const float factor : {0.25f, 0.0f}) {
+        Scene fresh = sceneFromJson(corner(50, kFog)); // in which it has never been denser
+        thin(fresh, factor == 0 ? 0 : 0.25f);
+        const Image expected = render(fresh).beauty;
+        render(scene);
+        thin(scene, factor);
+        EXPECT_EQ(render(scene).beauty.pixels, expected.pixels) << "times " << factor;
+    }
+}
+
 TEST_P(TechniqueLaws, TheSameFrameHasTheSameBitsWhateverWasBefore) {
     const Scene scene = sceneFromJson(corner(50, kFog)), dim = sceneFromJson(corner(3, "")),
                 elsewhere = sceneFromJson(sealedRoom(0.3, 0, true));

@@ -42,7 +42,7 @@ const plugin::TechniqueInfo& OctavesTechnique::info() const {
         .automatic = 1,
         .cost = 4,
         .errorOnSurfaces = 1,
-        .errorInMedia = 0.3f};
+        .errorInMedia = 0.44f};
     return kInfo;
 }
 

@@ -109,20 +109,20 @@ bool TracedScene::moveSurfaces(const Scene& scene, const dvec3& origin) {
     return true;
 }
 
-void TracedScene::updateMedia(const Scene& scene, const dvec3& origin, bool guessed) {
+void TracedScene::updateMedia(const Scene& scene, const dvec3& origin, bool useProxies) {
     scene_.lights.reset(); // keeps references to media
-    std::unique_ptr<tracing::MediaField> guess = std::move(guessed_ ? scene_.media : otherMedia_);
+    std::unique_ptr<tracing::MediaField> proxies = std::move(usesProxies_ ? scene_.media : otherMedia_);
     auto actual = std::make_unique<tracing::MediaField>(scene, origin);
-    if (guessed) {
+    if (useProxies) {
         tracing::ProxyMedia made = tracing::makeProxyMedia(scene, origin);
         // Paths that are kept name the media that they went through: these stay while nothing about them changes.
-        if (!guess || made.hash != guessHash_)
-            guess = std::make_unique<tracing::MediaField>(std::move(made.field));
-        guessHash_ = made.hash;
+        if (!proxies || made.hash != proxyHash_)
+            proxies = std::make_unique<tracing::MediaField>(std::move(made.field));
+        proxyHash_ = made.hash;
     }
-    guessed_ = guessed;
-    scene_.media = std::move(guessed ? guess : actual);
-    otherMedia_ = std::move(guessed ? actual : guess);
+    usesProxies_ = useProxies;
+    scene_.media = std::move(useProxies ? proxies : actual);
+    otherMedia_ = std::move(useProxies ? actual : proxies);
 }
 
 void TracedScene::updateContent(const Scene& scene, const dvec3& origin) {
@@ -140,7 +140,7 @@ Result<void> TracedScene::update(const plugin::FrameInputs& inputs,
     const SceneVersions& now = scene.versions;
     const dvec3 origin(inputs.origin[0], inputs.origin[1], inputs.origin[2]);
     const uint64_t key =
-        cacheKey(options.guessedMedia, now.structure, now.transforms, now.meshes, now.materials,
+        cacheKey(options.proxyMedia, now.structure, now.transforms, now.meshes, now.materials,
                  now.textures, now.lights, now.media, now.environment, origin);
     if (whole_ == &scene && key == key_) return {};
 
@@ -157,13 +157,13 @@ Result<void> TracedScene::update(const plugin::FrameInputs& inputs,
             }
         }
     }
-    updateMedia(scene, origin, options.guessedMedia);
+    updateMedia(scene, origin, options.proxyMedia);
     scene_.lights =
         std::make_unique<tracing::Lights>(scene, origin, *scene_.surfaces, *scene_.media);
     updateContent(scene, origin);
     emission_ = std::make_unique<tracing::LightEmission>(scene_, content_);
     key_ = key;
-    walksKey_ = guessed_ ? cacheKey(guessHash_, keys.surfaces, keys.lights, content_) : key;
+    walksKey_ = usesProxies_ ? cacheKey(proxyHash_, keys.surfaces, keys.lights, content_) : key;
     whole_ = &scene;
     surfacesKey_ = keys.surfaces;
     shapesKey_ = keys.shapes;

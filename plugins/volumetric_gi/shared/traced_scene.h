@@ -28,13 +28,13 @@ template <typename Command> Command& bindTraced(Command& command, const TracedBu
 
 struct TracedSceneOptions {
     /// Paths are to go through media that small changes of the media do not change (tracing/proxy_media.h).
-    bool guessedMedia = false;
+    bool proxyMedia = false;
 };
 
 class TracedScene {
 public:
     /// What has not changed since the last call stays, so that a second technique's call in a frame costs nothing. Where it asks for other options, media
-    /// and lights are made anew for it, but not surfaces; guessed media live on meanwhile, for paths that are kept name them.
+    /// and lights are made anew for it, but not surfaces; proxy media live on meanwhile, for paths that are kept name them.
     /// Errors: the surfaces do not fit into memory.
     Result<void> update(const plugin::FrameInputs& inputs, const TracedSceneOptions& options);
 
@@ -45,11 +45,11 @@ public:
     [[nodiscard]] const tracing::LightEmission& emission() const { return *emission_; }
     /// Around what is in the scene, without the landscape that it stands in; render space.
     [[nodiscard]] const Bounds& content() const { return content_; }
-    /// Are the media there guessed?
-    [[nodiscard]] bool guessed() const { return guessed_; }
+    /// Are the media there proxies?
+    [[nodiscard]] bool usesProxies() const { return usesProxies_; }
     /// The media as they are.
     [[nodiscard]] const tracing::MediaField& media() const {
-        return guessed_ ? *otherMedia_ : *scene_.media;
+        return usesProxies_ ? *otherMedia_ : *scene_.media;
     }
     /// All triangles, and a tree over them, as shaders read them.
     [[nodiscard]] const std::vector<gpu::TracedTriangle>& triangles() const { return triangles_; }
@@ -69,20 +69,20 @@ public:
 private:
     Result<void> updateSurfaces(const Scene& scene, const dvec3& origin);
     bool moveSurfaces(const Scene& scene, const dvec3& origin);
-    void updateMedia(const Scene& scene, const dvec3& origin, bool guessed);
+    void updateMedia(const Scene& scene, const dvec3& origin, bool useProxies);
     void updateContent(const Scene& scene, const dvec3& origin);
 
     tracing::TracerScene scene_;
     std::unique_ptr<tracing::MediaField>
-        otherMedia_; // where those in scene_ are guessed, the media as they are; else the last guess, if any
+        otherMedia_; // where those in scene_ are proxies, the media as they are; else the last proxies, if any
     std::unique_ptr<tracing::LightEmission> emission_;
     Bounds content_;
     std::vector<gpu::TracedTriangle> triangles_;
     std::vector<tracing::TreeNode> tree_;
     TracedBuffers buffers_; // of this frame
-    bool hasHoles_ = false, guessed_ = false;
+    bool hasHoles_ = false, usesProxies_ = false;
     const Scene* whole_ = nullptr;
-    uint64_t key_ = 0, walksKey_ = 0, guessHash_ = 0, surfacesKey_ = 0, shapesKey_ = 0;
+    uint64_t key_ = 0, walksKey_ = 0, proxyHash_ = 0, surfacesKey_ = 0, shapesKey_ = 0;
 };
 
 } // namespace tyndall::volumetric_gi

@@ -142,8 +142,8 @@ void VplTechnique::makeLights(const plugin::FrameInputs& inputs) {
         choose(inputs, what, candidates);
     }
     set_ = packWalks(
-        scene_.guessed() ? reweighed(walks_, *scene_.scene().media, scene_.media()) : walks_, what);
-    if (!scene_.guessed()) walks_ = {}; // they name media that are not kept
+        scene_.usesProxies() ? reweighed(walks_, *scene_.scene().media, scene_.media()) : walks_, what);
+    if (!scene_.usesProxies()) walks_ = {}; // they name media that are not kept
     if (anew) makeMaps(generation);
     walksKey_ = walksKey;
     lightsKey_ = wantedKey_ = lightsKey;
@@ -211,12 +211,12 @@ void VplTechnique::choose(const plugin::FrameInputs& inputs, const WalkOrder& or
                  meanDistanceOf(lights, scene_.content(), 1.0 / candidates), seed);
 }
 
-/// By paths on the processor: in averaged frames alone, for they are noise that has to be averaged. Not where walks go through guesses of the media.
+/// By paths on the processor: in averaged frames alone, for they are noise that has to be averaged. Not where walks go through proxy media.
 bool VplTechnique::followsWhatIsMissed(const plugin::FrameInputs& inputs) const {
     return used_.nearPaths > 0 && std::max(used_.clamp, used_.surfaceClamp) > 0 &&
            used_.fromSurfaces && used_.fromMedia &&
            used_.compensation == int32_t(gpu::kVplTraced) &&
-           used_.show != int32_t(gpu::kVplShowLost) && converges(inputs) && !scene_.guessed() &&
+           used_.show != int32_t(gpu::kVplShowLost) && converges(inputs) && !scene_.usesProxies() &&
            (inputs.kinds & kAllMedia) == kAllMedia; // they see all media
 }
 

@@ -41,7 +41,7 @@ private:
     VplSet set_;
     std::vector<uint32_t> maps_; // of rays
     SurfacePoints points_;       // for maps that are splatted
-    Walks walks_;                // through guessed media, where those are
+    Walks walks_;                // through proxy media, where those are used
     uint64_t lightsKey_ = 0, walksKey_ = 0;
     uint64_t turnsKey_ = 0,
              wantedKey_ =

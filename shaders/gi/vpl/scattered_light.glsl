@@ -23,7 +23,7 @@ vec3 phaseDirection(Segment s, vec3 direction, vec3 u, out float weight) {
 }
 
 /// 1/b of a point in a medium: no farther than the free path there, or what the bound takes away would be most of the light, and has to be followed on
-/// and on. As the processor has it (InstantRadiosity::reachElsewhere).
+/// and on. As the processor has it (BiasCompensation::clampedOnGpu).
 float localClampSquared(vec3 position) {
     if (vpl.upToFreePath == 0u) return vplClampScale(position) * vpl.clampSquared;
     vec3 extinction = vec3(0.0);
