@@ -32,7 +32,7 @@ Outcome CaptureRun::renderFrames(JobControl& job) {
         if (Outcome done = renderFrame(); !done.ok()) return done;
         if (job.cancelled())
             return failed(fmt::format("interrupted after {} of {} frames; '{}' was not written",
-                                      index + 1, limit, options_.output));
+                                      index + 1, limit, options_.outputOfFrame(index)));
         const bool last =
             index + 1 == limit || (options_.converge && recorder_->result().converged);
         if (options_.writesSequence() || last)

@@ -72,7 +72,7 @@ Outcome RenderSession::startRenderer(CpuProfiler* profiler) {
     }
     const SettingsLayers layers{options_.scene, scene_.settings, plan_.quality,
                                 options_.assignments, options_.gi};
-    if (Outcome applied = applySettings(*renderer_, layers, plan_.terms, &settingsOfScene_);
+    if (Outcome applied = applySettings(*renderer_, layers, scene_, plan_.terms, &settingsOfScene_);
         !applied.ok())
         return applied;
     const CpuZone zone(profiler, "renderer.setScene");

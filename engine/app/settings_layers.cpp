@@ -16,11 +16,12 @@ public:
         if (assignment.starts_with(std::string(kTechniqueSetting) + "=")) techniqueIsOf_ = origin;
         return {};
     }
-    /// What cannot be rendered in any scene is said before one is uploaded.
-    [[nodiscard]] Outcome checkTechnique(TermSet terms) const {
+    /// What cannot be rendered in this scene is said before it is uploaded.
+    [[nodiscard]] Outcome checkTechnique(const Scene& scene, TermSet terms) const {
         const std::string gi = renderer_.settings().get(kTechniqueSetting).value();
+        const bool media = renderer_.settings().get("media.enabled").value() == "true";
         const Result<FramePlan> plan =
-            makePlan(gi, terms, renderer_.techniques(), {true, true, true, true});
+            makePlan(gi, terms, renderer_.techniques(), sceneTraits(scene, media));
         return plan.ok() ? Outcome{} : wrongInput(techniqueIsOf_ + plan.message());
     }
 
@@ -39,7 +40,8 @@ SettingsSnapshot snapshotOf(const SettingsRegistry& settings) {
     return snapshot;
 }
 
-Outcome applySettings(Renderer& renderer, const SettingsLayers& layers, TermSet terms,
+Outcome applySettings(Renderer& renderer, const SettingsLayers& layers, const Scene& scene,
+                      TermSet terms,
                       SettingsSnapshot* afterScene) {
     Layers applied(renderer);
     const std::string ofScene = fmt::format("'{}': /settings: ", layers.sceneFile);
@@ -54,7 +56,7 @@ Outcome applySettings(Renderer& renderer, const SettingsLayers& layers, TermSet 
                                           "--gi " + layers.gi + ": ");
             !done.ok())
             return done;
-    return applied.checkTechnique(terms);
+    return applied.checkTechnique(scene, terms);
 }
 
 } // namespace tyndall

@@ -27,9 +27,10 @@ struct SettingsLayers {
     std::string gi;                       // --gi; empty: not given
 };
 
-/// Applies the layers to the renderer's settings. `terms`: what will be asked of the technique. `afterScene`, which may be null,
+/// Applies the layers to the renderer's settings. `scene`, `terms`: what will be asked of the technique. `afterScene`, which may be null,
 /// gets the settings as the scene file alone has them. Errors name the file or the option, and the setting.
-Outcome applySettings(Renderer& renderer, const SettingsLayers& layers, TermSet terms,
+Outcome applySettings(Renderer& renderer, const SettingsLayers& layers, const Scene& scene,
+                      TermSet terms,
                       SettingsSnapshot* afterScene = nullptr);
 
 } // namespace tyndall

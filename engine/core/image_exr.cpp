@@ -1,6 +1,7 @@
 // OpenEXR, scan lines, one part. Files are encoded and decoded in memory: writing stays atomic, and what a hostile
 // header promises is compared with what the file can hold before any pixel is allocated.
 
+#include "core/check.h"
 #include "core/image.h"
 
 #include <algorithm>
@@ -92,6 +93,7 @@ std::string encode(std::span<const ImageLayer> layers, const ImageMetadata& meta
         }
         for (int c = 0; c < image.channels; ++c) {
             const std::string name = channelName(layer, c);
+            CHECK(!header.channels().findChannel(name), "two layers are called " + name);
             header.channels().insert(name, Imf::Channel(type));
             const size_t pixelBytes = sampleBytes * size_t(image.channels);
             frame.insert(name, Imf::Slice(type, const_cast<char*>(base) + sampleBytes * size_t(c),

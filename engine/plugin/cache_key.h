@@ -2,6 +2,7 @@
 // What a cached result follows from, as one number: for Builder::cacheBy(), and for whatever is kept while nothing has changed.
 
 #include <bit>
+#include <cmath>
 #include <concepts>
 #include <cstdint>
 #include <span>
@@ -53,7 +54,10 @@ template <typename... Values> uint64_t cacheKey(const Values&... values) {
 
 /// Of a view, but for its jitter, its frame and its random numbers.
 inline uint64_t viewKey(const gpu::ViewData& view) {
-    return cacheKey(view.viewFromRender, view.clipFromRender[0][0], view.clipFromRender[1][1],
+    // The lens, without what rounding leaves of the jitter.
+    const dmat4 clipFromView = dmat4(view.clipFromRender) * glm::inverse(dmat4(view.viewFromRender));
+    const auto rounded = [](double x) { return float(std::round(x * 4096) / 4096); };
+    return cacheKey(view.viewFromRender, rounded(clipFromView[0][0]), rounded(clipFromView[1][1]),
                     view.size.x, view.size.y, view.flags);
 }
 

@@ -14,12 +14,16 @@ namespace {
 
 constexpr int kLargestPicture = 16384; // pixels along an edge: what every GL 4.5 driver takes
 
-SceneTraits traitsOf(const Scene& scene, const GpuScene& surfaces, const LightSystem& lights,
-                     bool mediaEnabled) {
+} // namespace
+
+SceneTraits sceneTraits(const Scene& scene, bool mediaEnabled) {
     SceneTraits traits;
-    traits.surfaces = !surfaces.items().empty();
-    traits.lights = !lights.lights().empty() || maximumOf(scene.environment.radiance) > 0 ||
-                    scene.environment.image;
+    traits.lights = maximumOf(scene.environment.radiance) > 0 || scene.environment.image;
+    const std::vector<bool> visible = scene.worldVisibility();
+    for (size_t i = 0; i < scene.nodes.size(); ++i) {
+        traits.surfaces |= visible[i] && !scene.nodes[i].meshes.empty();
+        traits.lights |= visible[i] && scene.nodes[i].light != kNone;
+    }
     for (const Material& material : scene.materials)
         traits.lights |= maximumOf(material.emissive) > 0;
     if (!mediaEnabled) return traits;
@@ -33,8 +37,6 @@ SceneTraits traitsOf(const Scene& scene, const GpuScene& surfaces, const LightSy
     }
     return traits;
 }
-
-} // namespace
 
 void Renderer::Impl::registerSettings() {
     settings.add({tyndall::gbufferSettings(), &gbufferSettings});
@@ -230,7 +232,7 @@ Result<FrameResult> Renderer::renderFrame(const FrameRequest& request) {
     if (Result<void> updated = r.updateScene(request, *pose); !updated) return updated.error();
     const Result<FramePlan> plan =
         makePlan(r.techniqueSettings.technique.view(), request.terms, r.techniques,
-                 traitsOf(*r.scene, r.surfaces, r.lights, r.media.settings().enabled));
+                 sceneTraits(*r.scene, r.media.settings().enabled));
     if (!plan) return plan.error();
     r.fillOrder(request, *plan);
     r.markOutputs(r.record(request), request);

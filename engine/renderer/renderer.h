@@ -70,6 +70,9 @@ struct TermImage {
     Image image;
 };
 
+/// What the scene can have in a picture, as makePlan() asks for it. `mediaEnabled`: the setting media.enabled.
+SceneTraits sceneTraits(const Scene& scene, bool mediaEnabled);
+
 class Renderer {
 public:
     /// Shaders are found, plugins loaded and set up. `context` must be current and outlive the renderer.

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 
@@ -64,11 +65,20 @@ std::vector<TermImage> Renderer::readTerms() {
     std::vector<TermImage> result;
     for (uint32_t i = 0; i < impl_->images.terms.count; ++i) {
         const TermImageHandle& handle = impl_->images.terms.images[i];
+        Image image = withoutAlpha(impl_->executor.readImage(handle.image));
+        // Techniques that share terms by kind of medium have an image each.
+        const auto same = std::find_if(result.begin(), result.end(), [&](const TermImage& other) {
+            return other.terms == handle.terms;
+        });
+        if (same != result.end()) {
+            for (size_t k = 0; k < image.pixels.size(); ++k)
+                same->image.pixels[k] += image.pixels[k];
+            continue;
+        }
         std::string name = termNames(handle.terms);
         for (char& c : name)
             if (c == ',') c = '+';
-        result.push_back(
-            {handle.terms, name, withoutAlpha(impl_->executor.readImage(handle.image))});
+        result.push_back({handle.terms, name, std::move(image)});
     }
     return result;
 }

@@ -91,6 +91,9 @@ Result<void> take(FramePlan& plan, const Assignment& item, std::span<const Techn
         if (!(item.terms & bit(term))) continue;
         const MediaSet taken = takenIn(plan, term), rest = technique.media & item.media & ~taken;
         const bool shares = (bit(term) & kTermsInMedia) != 0 && technique.separatesMedia;
+        if ((bit(term) & kTermsInMedia) != 0 && (technique.media & item.media) == 0)
+            return Error{"technique '" + technique.name + "' computes nothing in " +
+                         mediaNames(item.media) + ": it has " + mediaNames(technique.media)};
         if (taken == 0 && rest != technique.media && !technique.separatesMedia)
             return Error{"technique '" + technique.name + "' cannot leave out a kind of medium"};
         if (taken != 0 && (!shares || rest == 0))

@@ -58,7 +58,7 @@ struct VplParams {
     uint mediaInView; // 0: the picture is seen through none
     uint lost;        // 1: lights give what the bound takes away from them, and nothing else
     float mediumClampSquared; // m²: 1/b in the content from surface to medium
-    uint nearLight;           // 1: what the bound takes away and no step makes up for is in `VplNear`
+    uint nearLight; // bits: what the bound takes away and no step makes up for is in `VplNear`, 1: of surfaces, 2: of media
     // Which lights count on surfaces and in media, a bit for each of kVplOfSurfaces and so on: each is the light of one term there.
     uint surfaceTerms, mediaTerms;
     uint upToFreePath; // 1: in a medium 1/b reaches no farther than the free path there

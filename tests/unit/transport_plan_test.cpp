@@ -146,6 +146,7 @@ TEST(TransportPlan, AnAssignmentMayNameTheKindOfMedium) {
     };
     EXPECT_NE(refusal("LVVE:clouds=lattice").find("shapes,height,grids,particles"),
               std::string::npos);
+    EXPECT_NE(refusal("LVVE:grids=network").find("it has particles"), std::string::npos);
     EXPECT_NE(refusal("LSSE:grids=lattice").find("on surfaces"), std::string::npos);
 }
 

@@ -99,6 +99,9 @@ VplSettings asInThePaper(VplSettings settings) {
     return settings;
 }
 
+/// Bits of VplParams::nearLight.
+constexpr uint32_t kNearSurfaces = 1, kNearMedia = 2;
+
 bool converges(const plugin::FrameInputs& inputs) {
     return (inputs.view.data.flags & gpu::kViewConverge) != 0;
 }
@@ -216,8 +219,7 @@ bool VplTechnique::followsWhatIsMissed(const plugin::FrameInputs& inputs) const 
     return used_.nearPaths > 0 && std::max(used_.clamp, used_.surfaceClamp) > 0 &&
            used_.fromSurfaces && used_.fromMedia &&
            used_.compensation == int32_t(gpu::kVplTraced) &&
-           used_.show != int32_t(gpu::kVplShowLost) && converges(inputs) && !scene_.usesProxies() &&
-           (inputs.kinds & kAllMedia) == kAllMedia; // they see all media
+           used_.show != int32_t(gpu::kVplShowLost) && converges(inputs) && !scene_.usesProxies();
 }
 
 void VplTechnique::makeNear(const plugin::FrameInputs& inputs) {
@@ -233,7 +235,8 @@ void VplTechnique::makeNear(const plugin::FrameInputs& inputs) {
     order.paths = uint32_t(used_.nearPaths);
     order.first = inputs.view.data.frameIndex * order.paths;
     order.onSurfaces = (inputs.terms & kIndirectOnSurfaces) != 0;
-    order.inMedia = (inputs.terms & ~kIndirectOnSurfaces) != 0 && inputs.media.count > 0 &&
+    order.inMedia = (inputs.terms & ~kIndirectOnSurfaces) != 0 &&
+                    (params.nearLight & kNearMedia) != 0 && inputs.media.count > 0 &&
                     inputs.transmittance; // else none is in view
     order.clamps = {metres(params.surfaceClampSquared), metres(params.clampSquared),
                     metres(params.mediumClampSquared), double(params.relaxed)};
@@ -279,7 +282,11 @@ VplGather VplTechnique::gather(const plugin::FrameInputs& inputs) const {
     const double finer = std::pow(frames, 1.0 / 6);
     params.mediumClampSquared = squared(mean * double(used_.surfaceClamp));
     // Where paths bring what it takes away, it costs no light, and stays wide for less noise.
-    params.nearLight = followsWhatIsMissed(inputs) ? 1 : 0;
+    params.nearLight = 0;
+    if (followsWhatIsMissed(inputs)) {
+        params.nearLight = kNearSurfaces;
+        if (inputs.kinds == kAllMedia) params.nearLight |= kNearMedia; // paths see all media
+    }
     params.surfaceClampSquared = params.nearLight != 0
                                      ? squared(meanDistanceOf(set_.positions, scene_.content(), 1) *
                                                double(used_.surfaceClamp) / finer)
