@@ -80,6 +80,18 @@ TEST(Composition, LightInTwoKindsOfMediaAddsUp) {
     }
 }
 
+TEST(Composition, TechniquesThatShareTermsShareTheirImage) {
+    const std::string ofBall = "LVVE:shapes=octaves,LXVVE:shapes=octaves",
+                      ofRest = "LVVE=vpl,LXVVE=vpl";
+    const Rendered both = rendered(ofBall + "," + ofRest);
+    ASSERT_EQ(both.terms.count("LVVE+LXVVE"), 1u);
+    ASSERT_EQ(both.terms.size(), 4u) << "three direct terms, and what both techniques compute";
+    Image sum(both.beauty.width, both.beauty.height, 3);
+    for (const auto& [name, image] : both.terms)
+        for (size_t i = 0; i < sum.pixels.size(); ++i) sum.pixels[i] += image.pixels[i];
+    EXPECT_LT(compareImages(sum, both.beauty).value().relmse, 1e-12); // single precision
+}
+
 /// Every term given to `technique` alone, and the sum of their images.
 Image sumOfParts(const std::string& technique, const std::vector<Term>& parts) {
     Image sum;

@@ -253,24 +253,8 @@ void VplTechnique::makeNear(const plugin::FrameInputs& inputs) {
     near_ = compensationLight(inputs.view.data, scene_.scene(), scene_.emission(), order);
 }
 
-VplGather VplTechnique::gather(const plugin::FrameInputs& inputs) const {
-    VplGather gather;
-    gpu::VplParams& params = gather.params;
-    params.lightCount = uint32_t(set_.lights.size());
-    params.walkCount = uint32_t(set_.walks.size()) - 1;
-    Bounds grids;
-    for (const tracing::MediumSource& medium : scene_.media().media())
-        if (medium.isGrid()) grids.include(medium.bounds());
-    const double rounds =
-        roundsOfLight(inputs.media, !grids.empty(), scene_) * double(params.lightCount);
-    const auto classes = [&](int32_t wanted, double points) {
-        const double least = rounds * points / kMostRounds;
-        return uint32_t(std::clamp(std::max(double(wanted), std::ceil(least)), 1.0,
-                                   double(std::max(params.walkCount, 1u))));
-    };
-    params.classes = classes(used_.classes, 2 * double(used_.samples)); // with compensation
-    params.surfaceClasses = classes(used_.surfaceClasses, 1);
-    params.mapSide = maps_.empty() && points_.points.empty() ? 0 : uint32_t(used_.mapSide);
+/// How near light is clamped, and what brings what that takes away.
+void VplTechnique::setClamps(const plugin::FrameInputs& inputs, gpu::VplParams& params) const {
     // The bound follows from all lights of an average: what it takes away tends to nothing as frames come.
     const double frames =
         converges(inputs) && !asPrinted() ? double(inputs.view.data.frameIndex) + 1 : 1;
@@ -296,6 +280,27 @@ VplGather VplTechnique::gather(const plugin::FrameInputs& inputs) const {
     const Bounds& content = scene_.content();
     const double radius = content.empty() ? 0 : 0.5 * glm::length(content.extent());
     if (radius > 0 && !asPrinted()) params.content = vec4(vec3(content.centre()), squared(1 / radius));
+}
+
+VplGather VplTechnique::gather(const plugin::FrameInputs& inputs) const {
+    VplGather gather;
+    gpu::VplParams& params = gather.params;
+    params.lightCount = uint32_t(set_.lights.size());
+    params.walkCount = uint32_t(set_.walks.size()) - 1;
+    Bounds grids;
+    for (const tracing::MediumSource& medium : scene_.media().media())
+        if (medium.isGrid()) grids.include(medium.bounds());
+    const double rounds =
+        roundsOfLight(inputs.media, !grids.empty(), scene_) * double(params.lightCount);
+    const auto classes = [&](int32_t wanted, double points) {
+        const double least = rounds * points / kMostRounds;
+        return uint32_t(std::clamp(std::max(double(wanted), std::ceil(least)), 1.0,
+                                   double(std::max(params.walkCount, 1u))));
+    };
+    params.classes = classes(used_.classes, 2 * double(used_.samples)); // with compensation
+    params.surfaceClasses = classes(used_.surfaceClasses, 1);
+    params.mapSide = maps_.empty() && points_.points.empty() ? 0 : uint32_t(used_.mapSide);
+    setClamps(inputs, params);
     params.lost = used_.show == int32_t(gpu::kVplShowLost) ? 1 : 0;
     params.compensation = params.lost != 0 ? gpu::kVplClamped : uint32_t(used_.compensation);
     params.surfaceTerms =

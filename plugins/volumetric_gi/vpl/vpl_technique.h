@@ -34,6 +34,7 @@ private:
     void choose(const plugin::FrameInputs& inputs, const WalkOrder& order, uint32_t candidates);
     [[nodiscard]] bool followsWhatIsMissed(const plugin::FrameInputs& inputs) const;
     void makeNear(const plugin::FrameInputs& inputs);
+    void setClamps(const plugin::FrameInputs& inputs, gpu::VplParams& params) const;
     [[nodiscard]] VplGather gather(const plugin::FrameInputs& inputs) const;
 
     VplSettings settings_{}, used_{}; // used_: in this frame, as gi.mode has it
