@@ -65,9 +65,10 @@ function(tyndall_see_internals target)
 endfunction()
 
 # tyndall_test(name LABEL unit SOURCES … DEPENDS … [INTERNALS room …]): one executable, one CTest entry:
-# its cases share a process, and so a GL context and compiled shaders.
+# its cases share a process, and so a GL context and compiled shaders. DAILY: the cases of every day, as a filter of GoogleTest; all of them are then run
+# by NAME_long, which is slow.
 function(tyndall_test name)
-  cmake_parse_arguments(ARG "SLOW" "LABEL;TIMEOUT" "SOURCES;DEPENDS;INTERNALS" ${ARGN})
+  cmake_parse_arguments(ARG "SLOW" "LABEL;TIMEOUT;DAILY" "SOURCES;DEPENDS;INTERNALS" ${ARGN})
   add_executable(${name} ${ARG_SOURCES})
   target_link_libraries(${name} PRIVATE tyndall_warnings ${ARG_DEPENDS} GTest::gtest GTest::gmock tyndall_test_support)
   tyndall_see_internals(${name} ${ARG_INTERNALS})
@@ -80,7 +81,13 @@ function(tyndall_test name)
   if(ARG_SLOW)
     list(APPEND labels slow)
   endif()
-  add_test(NAME ${name} COMMAND ${name})
-  set_tests_properties(${name} PROPERTIES LABELS "${labels}" TIMEOUT ${ARG_TIMEOUT}
-    ENVIRONMENT "TYNDALL_SOURCE_DIR=${CMAKE_SOURCE_DIR};TYNDALL_BIN_DIR=${CMAKE_BINARY_DIR}/bin")
+  set(environment "TYNDALL_SOURCE_DIR=${CMAKE_SOURCE_DIR};TYNDALL_BIN_DIR=${CMAKE_BINARY_DIR}/bin")
+  if(ARG_DAILY)
+    add_test(NAME ${name} COMMAND ${name} --gtest_filter=${ARG_DAILY})
+    add_test(NAME ${name}_long COMMAND ${name})
+    set_tests_properties(${name}_long PROPERTIES LABELS "${labels};slow" TIMEOUT 5400 ENVIRONMENT "${environment};TYNDALL_LONG_TESTS=1")
+  else()
+    add_test(NAME ${name} COMMAND ${name})
+  endif()
+  set_tests_properties(${name} PROPERTIES LABELS "${labels}" TIMEOUT ${ARG_TIMEOUT} ENVIRONMENT "${environment}")
 endfunction()
