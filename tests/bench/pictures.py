@@ -67,8 +67,10 @@ def diff(options):
     same, worst = 0, 0.0
     for picture in sorted(before.glob("*.exr")):
         other = after / picture.name
+        if options.only and options.only not in picture.name:
+            continue
         if not other.exists():
-            sys.exit(f"{other} is missing: make it first")
+            sys.exit(f"{other} is missing: make it first, or leave it out by --only")
         if picture.read_bytes() == other.read_bytes():
             same += 1
             continue
@@ -95,6 +97,7 @@ def main():
     differ.add_argument("before")
     differ.add_argument("after")
     differ.add_argument("--tyndall", required=True)
+    differ.add_argument("--only", help="pictures whose name has this in it")
     differ.add_argument("--relmse", type=float, default=0.0)
     differ.set_defaults(run=diff)
     options = parser.parse_args()
