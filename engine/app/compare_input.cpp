@@ -10,13 +10,6 @@ namespace tyndall {
 namespace fs = std::filesystem;
 namespace {
 
-std::string lowerExtension(const fs::path& path) {
-    std::string extension = path.extension().string();
-    std::transform(extension.begin(), extension.end(), extension.begin(),
-                   [](unsigned char c) { return char(std::tolower(c)); });
-    return extension;
-}
-
 /// The picture's layer has no name, or this one.
 bool isPicture(std::string_view layer) { return layer.empty() || layer == "beauty"; }
 

@@ -13,6 +13,9 @@
 
 namespace tyndall {
 
+/// ".exr" of "PICTURE.EXR"; "" where there is none.
+std::string lowerExtension(const std::filesystem::path& path);
+
 /// width × height × channels floats, interleaved, top row first. No unit is implied.
 struct Image {
     int width = 0;

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cctype>
 #include <cerrno>
 #include <cstring>
 #include <fcntl.h>
@@ -68,6 +69,12 @@ fs::path temporaryNameBeside(const fs::path& target) {
 }
 
 } // namespace
+
+std::string lowerExtension(const std::filesystem::path& path) {
+    std::string extension = path.extension().string();
+    for (char& c : extension) c = char(std::tolower(static_cast<unsigned char>(c)));
+    return extension;
+}
 
 Result<void> writeFileAtomically(const fs::path& path, std::string_view content) {
     if (path.empty() || path.filename().empty())

@@ -206,8 +206,7 @@ void sanitise(Image& image, const std::filesystem::path& path) {
 } // namespace
 
 Result<Image> readHdr(const std::filesystem::path& path) {
-    std::string extension = path.extension().string();
-    for (char& c : extension) c = char(std::tolower(static_cast<unsigned char>(c)));
+    const std::string extension = lowerExtension(path);
     if (extension != ".hdr" && extension != ".exr")
         return Error{fmt::format(
             "'{}' is not an environment image: its name must end in .hdr or .exr", path.string())};
