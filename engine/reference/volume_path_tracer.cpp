@@ -30,14 +30,7 @@ VolumePathTracer::VolumePathTracer(const TracerScene& scene, const PathSettings&
 
 void VolumePathTracer::see(Term term, const dvec3& light) {
     if (!(settings_.terms & bit(term))) return;
-    for (int c = 0; c < 3; ++c) {
-        if (!std::isfinite(light[c])) {
-            ++counts_.nonFinite;
-            return;
-        }
-        counts_.negative += light[c] < 0;
-    }
-    light_->add(term, light);
+    if (counts_.takes(light)) light_->add(term, light);
 }
 
 void VolumePathTracer::trace(const CameraRays::CameraRay& start, Sampler& sampler,

@@ -35,14 +35,7 @@ PathCounts VirtualLightPath::counts() const {
 void VirtualLightPath::see(PathHistory history, const dvec3& light) {
     const Term term = history.term();
     if (!(settings_.terms & bit(term))) return;
-    for (int c = 0; c < 3; ++c) {
-        if (!std::isfinite(light[c])) {
-            ++counts_.nonFinite;
-            return;
-        }
-        counts_.negative += light[c] < 0;
-    }
-    light_->add(term, light);
+    if (counts_.takes(light)) light_->add(term, light);
 }
 
 double VirtualLightPath::scaleAt(const dvec3& position) const {
