@@ -6,7 +6,8 @@
 #include <fmt/format.h>
 
 #include "core/low_discrepancy.h"
-#include "framegraph/hash.h"
+#include "plugin/cache_key.h"
+#include "plugin/cached_upload.h"
 #include "renderer/emissive_lights.h"
 #include "renderer/gpu_scene.h"
 
@@ -343,11 +344,6 @@ void LightSystem::update(const LightFrame& frame) {
 
 LightResources LightSystem::addPasses(fg::FrameGraph& graph, const GpuScene& scene,
                                       const ViewResources& view, bool shadows) {
-    struct Data {
-        fg::BufferHandle lights;
-        const gpu::LightData* data;
-        size_t bytes;
-    };
     LightResources resources;
     resources.lightCount = uint32_t(lights_.size());
     resources.sceneLightCount =
@@ -358,29 +354,10 @@ LightResources LightSystem::addPasses(fg::FrameGraph& graph, const GpuScene& sce
         (view.data.flags & gpu::kViewConverge) == 0 &&
         std::any_of(plan_.views.begin(), plan_.views.end(),
                     [](const gpu::ShadowView& shadow) { return shadow.searchTaps > 0; });
-    uint64_t key = fg::kHashStart;
-    const auto* words = reinterpret_cast<const unsigned char*>(lights_.data());
-    key = fg::hashName(
-        {reinterpret_cast<const char*>(words), lights_.size() * sizeof(gpu::LightData)}, key);
     resources.lights =
-        graph
-            .addPass<Data>(
-                "lights.upload",
-                [&](fg::Builder& builder, Data& data) {
-                    data.data = lights_.data();
-                    data.bytes = lights_.size() * sizeof(gpu::LightData);
-                    data.lights = builder.create(
-                        "lights", fg::BufferDesc{std::max(data.bytes, sizeof(gpu::LightData))},
-                        fg::Access::TransferWrite);
-                    builder.cacheBy(key);
-                },
-                [](const Data& data, fg::PassContext& context) {
-                    if (data.bytes > 0)
-                        context.upload(data.lights, 0, data.data, data.bytes);
-                    else
-                        context.clearBuffer(data.lights, 0);
-                })
-            .lights;
+        addCachedUpload(graph, "lights.upload", "lights", lights_.data(),
+                        lights_.size() * sizeof(gpu::LightData),
+                        cacheKey(std::as_bytes(std::span(lights_))));
     const ShadowResources maps = shadows_.addPasses(graph, scene, plan_, view, shadows);
     resources.shadowAtlas = maps.atlas;
     resources.shadowViews = maps.views;

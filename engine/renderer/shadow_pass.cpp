@@ -3,9 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <string_view>
 
 #include "framegraph/hash.h"
+#include "plugin/cache_key.h"
+#include "plugin/cached_upload.h"
 #include "renderer/gpu_scene.h"
 
 namespace tyndall {
@@ -47,31 +48,8 @@ fg::RasterState emptyState() {
 }
 
 fg::BufferHandle addViewUpload(fg::FrameGraph& graph, const ShadowPlan& plan) {
-    struct Upload {
-        fg::BufferHandle views;
-        const gpu::ShadowView* data;
-        size_t bytes;
-    };
-    const std::string_view bytes(reinterpret_cast<const char*>(plan.views.data()),
-                                 plan.views.size() * sizeof(gpu::ShadowView));
-    return graph
-        .addPass<Upload>(
-            "shadow.views",
-            [&](fg::Builder& builder, Upload& data) {
-                data.data = plan.views.data();
-                data.bytes = bytes.size();
-                data.views = builder.create(
-                    "shadow.views", fg::BufferDesc{std::max(data.bytes, sizeof(gpu::ShadowView))},
-                    fg::Access::TransferWrite);
-                builder.cacheBy(fg::hashName(bytes));
-            },
-            [](const Upload& data, fg::PassContext& context) {
-                if (data.bytes > 0)
-                    context.upload(data.views, 0, data.data, data.bytes);
-                else
-                    context.clearBuffer(data.views, 0);
-            })
-        .views;
+    return addCachedUpload(graph, "shadow.views", plan.views,
+                           cacheKey(std::as_bytes(std::span(plan.views))));
 }
 
 } // namespace

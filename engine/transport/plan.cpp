@@ -48,6 +48,14 @@ MediaSet takenIn(const FramePlan& plan, Term term) {
     return taken;
 }
 
+/// Kinds of media in which `owner` computes the term.
+MediaSet ownedIn(const FramePlan& plan, Term term, int owner) {
+    MediaSet media = 0;
+    for (uint32_t kind = 0; kind < kMediaKindCount; ++kind)
+        if (plan.owner[size_t(term)][kind] == owner) media |= 1u << kind;
+    return media;
+}
+
 /// One item of a list of assignments.
 struct Assignment {
     TermSet terms;
@@ -151,11 +159,9 @@ Result<void> checkKinds(const FramePlan& plan, std::span<const Technique> techni
     for (size_t i = 0; i < techniques.size(); ++i) {
         const MediaSet all = plan.mediaOf(int(i));
         for (uint32_t t = 0; t < kTermCount; ++t) {
-            if (!(plan.termsOf(int(i)) & bit(Term(t)) & kTermsInMedia)) continue;
-            MediaSet here = 0;
-            for (const TermShare& share : plan.sharesOf(Term(t)))
-                if (share.owner == int(i)) here = share.media;
-            if (here != all)
+            if (!(plan.wanted & bit(Term(t)) & kTermsInMedia)) continue;
+            const MediaSet here = ownedIn(plan, Term(t), int(i));
+            if (here != 0 && here != all)
                 return Error{"technique '" + techniques[i].name +
                              "' computes all its terms in the same kinds of media: " +
                              std::string(termName(Term(t))) + " is left to it in " +
@@ -303,7 +309,10 @@ Result<FramePlan> makePlan(std::string_view gi, TermSet wanted,
     if (Result<void> fits = checkSets(plan, techniques); !fits.ok()) return fits.error();
     if (Result<void> fits = checkKinds(plan, techniques); !fits.ok()) return fits.error();
     for (uint32_t i = 0; i < kTermCount; ++i) {
-        if (!plan.sharesOf(Term(i)).empty()) plan.rendered |= bit(Term(i));
+        const auto& owners = plan.owner[i];
+        const bool owned =
+            std::any_of(owners.begin(), owners.end(), [](int who) { return who != kNobody; });
+        if (owned) plan.rendered |= wanted & bit(Term(i));
         if (plan.missingIn(Term(i)) != 0) plan.missing |= bit(Term(i));
     }
     return plan;
