@@ -228,12 +228,13 @@ void expectNear(const ReferenceTerms& reference, const Image& ours, TermSet give
             .relmse;
     const double energy = compareImages(ours, reference.sum(given)).value().energy;
     printf("%s: relmse %.4f, energy %.4f\n", termNames(given).c_str(), relmse, energy);
-    // What is declared is typical of medium quality: twice as much at low, in this scene. The reference's layers have some 0.02 of noise themselves, 1,024
-    // samples a pixel.
-    EXPECT_LT(relmse, 2 * declared + 0.02) << termNames(given);
+    // What is declared is typical of medium quality: twice as much at low, in this scene, but a tenth more at most: who is far off has no more to give.
+    // The reference's layers have some 0.02 of noise themselves, 1,024 samples a pixel.
+    const double expected = declared + std::min(declared, 0.1);
+    EXPECT_LT(relmse, expected + 0.02) << termNames(given);
     // The whole may be off as if all pixels erred to one side; a part by half of what one has that is missing or counted twice.
-    EXPECT_NEAR(energy, 1, given == claims ? std::sqrt(2 * declared) : 0.5) << termNames(given);
-    EXPECT_LT(2 * declared, 0.9) << "a black picture has 1: who claims must be nearer";
+    EXPECT_NEAR(energy, 1, given == claims ? std::sqrt(expected) : 0.5) << termNames(given);
+    EXPECT_LT(expected, 0.9) << "a black picture has 1: who claims must be nearer";
 }
 
 TEST_P(TechniqueLaws, EachClaimIsNearTheReference) {

@@ -20,19 +20,10 @@ struct Compensation {
     uint64_t nonFinite = 0;
 };
 
-Scene lampOverABlock(bool fog, int& camera) {
+Scene lampOverAnAngle(bool fog, int& camera) {
     SceneMaker maker;
-    if (fog) {
-        Medium medium;
-        medium.kind = MediumKind::Sphere;
-        medium.size = dvec3(3);
-        medium.scattering = {1.2f, 1.0f, 0.8f};
-        medium.absorption = {0.1f, 0.1f, 0.1f};
-        maker.addMedium(medium);
-    }
-    maker.addPrimitive(PrimitiveShape::Box, {1, 0.2, 1}, matt({0.7f, 0.6f, 0.5f}));
+    addLampOverABlock(maker, fog);
     maker.addPrimitive(PrimitiveShape::Box, {0.2, 1, 1}, matt({0.5f, 0.6f, 0.7f}));
-    maker.addPointLight({0.5, 1.1, 0.4}, 10, 0.2);
     camera = maker.addCamera({0.3, 0.7, 4}, {0, 0, 0});
     return maker.take();
 }
@@ -71,7 +62,7 @@ Compensation missed(const Scene& scene, int camera, bool inMedia,
 
 TEST(Compensation, WithAnEndlessClampDistanceItIsAllLightBetweenSurfaces) {
     int camera = 0;
-    const Scene scene = lampOverABlock(false, camera);
+    const Scene scene = lampOverAnAngle(false, camera);
     reference::RenderSettings settings;
     settings.width = settings.height = kSide;
     settings.path.terms = kIndirectOnSurfaces;
@@ -97,14 +88,14 @@ TEST(Compensation, WithAnEndlessClampDistanceItIsAllLightBetweenSurfaces) {
 
 TEST(Compensation, WithoutClampingThereIsNone) {
     int camera = 0;
-    const Scene scene = lampOverABlock(true, camera);
+    const Scene scene = lampOverAnAngle(true, camera);
     for (const bool inMedia : {false, true})
         EXPECT_EQ(missed(scene, camera, inMedia, {0, 0, 0, 1}, 256).mean.sum(), dvec3(0));
 }
 
 TEST(Compensation, WhatAStepInMediaGathersIsNotBroughtAgain) {
     int camera = 0;
-    const Scene scene = lampOverABlock(true, camera);
+    const Scene scene = lampOverAnAngle(true, camera);
     const auto light = [](const Compensation& found, Term term) {
         return tracing::meanOf(found.mean.terms[size_t(term)]);
     };

@@ -204,14 +204,7 @@ TEST(LightWalker, AimingAtTheContentChangesNoLight) {
 
 TEST(InstantRadiosity, TheMeanIsTheSameForEveryBound) {
     SceneMaker maker;
-    Medium fog;
-    fog.kind = MediumKind::Sphere;
-    fog.size = dvec3(3);
-    fog.scattering = {1.2f, 1.0f, 0.8f};
-    fog.absorption = {0.1f, 0.1f, 0.1f};
-    maker.addMedium(fog);
-    maker.addPrimitive(PrimitiveShape::Box, {1, 0.2, 1}, matt({0.7f, 0.6f, 0.5f}));
-    maker.addPointLight({0.5, 1.1, 0.4}, 10, 0.2);
+    addLampOverABlock(maker, true);
     const int camera = maker.addCamera({0.3, 0.7, 4}, {0, 0, 0});
     const Scene scene = maker.take();
     reference::RenderSettings settings;

@@ -128,4 +128,17 @@ std::shared_ptr<const BrickGrid> lumpyGrid(double extent, double densest, uint64
         makeBrickGrid(voxels, ivec3(0), ivec3(kVoxels), worldFromIndex));
 }
 
+void addLampOverABlock(SceneMaker& maker, bool fog) {
+    if (fog) {
+        Medium medium;
+        medium.kind = MediumKind::Sphere;
+        medium.size = dvec3(3);
+        medium.scattering = {1.2f, 1.0f, 0.8f};
+        medium.absorption = {0.1f, 0.1f, 0.1f};
+        maker.addMedium(medium);
+    }
+    maker.addPrimitive(PrimitiveShape::Box, {1, 0.2, 1}, matt({0.7f, 0.6f, 0.5f}));
+    maker.addPointLight({0.5, 1.1, 0.4}, 10, 0.2);
+}
+
 } // namespace tyndall::validation

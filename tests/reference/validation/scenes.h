@@ -34,6 +34,9 @@ private:
     Scene scene_;
 };
 
+/// A lamp over a block of matt stuff; with fog around both.
+void addLampOverABlock(SceneMaker& maker, bool fog);
+
 /// A slab of matter between y = -tau (m) and y = 0.
 void addSlab(SceneMaker& maker, double albedo, double anisotropy, double tau);
 
