@@ -1,22 +1,19 @@
 // LVVE from LVE: what a segment scatters once, times the part that the media around it scatter back into it and on to the eye.
 #define MARCH_PHASE_GROUPS PHASE_GROUPS
+#include "gi/shared/march.glsl"
 #include "media/march.glsl"
 #include "shared/@name@.h"
 
-layout(local_size_x = 8, local_size_y = 8) in;
-
-layout(std140) uniform Params { @Name@Params params; };
-uniform sampler2D depth;
-layout(rgba32f) uniform writeonly image2D inScatter;
+layout(std140) uniform Technique { @Name@Params technique; };
 
 /// Of all directions the mean part of light that the media stop: 0 in empty space, 1 deep inside of a cloud.
 vec3 opacityAround(vec3 position, vec2 turn) {
     vec3 sum = vec3(0.0);
-    for (uint i = 0u; i < params.directions; ++i) {
-        vec3 direction = directionOnSphere(fract(turn + vec2(float(i) / float(params.directions), 0.61803399 * float(i))));
+    for (uint i = 0u; i < technique.directions; ++i) {
+        vec3 direction = directionOnSphere(fract(turn + vec2(float(i) / float(technique.directions), 0.61803399 * float(i))));
         sum += 1.0 - exp(-opticalDepthAlong(position, direction, kInfiniteDistance));
     }
-    return sum / float(params.directions);
+    return sum / float(technique.directions);
 }
 
 vec3 albedoOf(Segment s) {
@@ -25,13 +22,13 @@ vec3 albedoOf(Segment s) {
     return scattering / max(s.depth, vec3(1e-30));
 }
 
-vec3 scatteredTwice(Ray ray, float distance, uvec2 pixel) {
+vec3 mediaLight(Ray ray, float distance, ivec2 pixel, uvec2 number) {
     vec3 sum = vec3(0.0);
     March march;
     if (!beginMarch(ray, distance, march)) return sum;
-    vec3 noise = vec3(pixelNoise(pixel, 0u), pixelNoise2(pixel, 1u));
-    vec2 turn = pixelNoise2(pixel, 2u);
-    uint environment = uint(pixelNoise(pixel, 3u) * float(mediaHeader.environmentStride));
+    vec3 noise = vec3(pixelNoise(number, 0u), pixelNoise2(number, 1u));
+    vec2 turn = pixelNoise2(number, 2u);
+    uint environment = uint(pixelNoise(number, 3u) * float(mediaHeader.environmentStride));
     Segment s;
     while (nextSegment(ray, march, s)) {
         if (s.scatters) {
@@ -45,12 +42,4 @@ vec3 scatteredTwice(Ray ray, float distance, uvec2 pixel) {
         ++environment;
     }
     return sum;
-}
-
-void main() {
-    ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
-    if (any(greaterThanEqual(pixel, imageSize(inScatter)))) return;
-    vec2 centre = vec2(pixel) + 0.5;
-    float distance = rayDistanceFromDepth(centre, texelFetch(depth, pixel, 0).r);
-    imageStore(inScatter, pixel, vec4(scatteredTwice(cameraRay(centre), distance, uvec2(pixel)), 1.0));
 }

@@ -4,11 +4,12 @@
 #include "shared/types.h"
 TYNDALL_SHARED_BEGIN
 
+// Uniform block `Technique`.
 struct @Name@Params {
-    uint lightCount;
     uint directions; // asked for the opacity around each segment
     uint padding0;
     uint padding1;
+    uint padding2;
 };
 
 TYNDALL_SHARED_END

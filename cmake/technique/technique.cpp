@@ -1,6 +1,7 @@
 #include "volumetric_gi/@name@/@name@_technique.h"
 
 #include "shared/@name@.h"
+#include "volumetric_gi/shared/lit_march.h"
 
 namespace tyndall::volumetric_gi {
 namespace {
@@ -43,43 +44,10 @@ plugin::SettingsTable @Name@Technique::settings() {
 
 plugin::FrameOutputs @Name@Technique::addPasses(fg::FrameGraph& graph,
                                                 const plugin::FrameInputs& inputs) {
-    struct Data {
-        ViewResources view;
-        LightResources lights;
-        MediaResources media;
-        fg::TextureHandle depth, inScatter;
-        gpu::@Name@Params params;
-    };
+    const gpu::@Name@Params params{uint32_t(settings_.directions), 0, 0, 0};
     plugin::FrameOutputs outputs;
-    outputs.inMedia = graph
-        .addPass<Data>(
-            "gi.@name@.march",
-            [&](fg::Builder& builder, Data& data) {
-                if (inputs.media.count == 0) return builder.skip("no medium in the scene");
-                if (inputs.lights.lightCount == 0) return builder.skip("no light in the scene");
-                data.view = inputs.view;
-                data.lights = readLights(builder, inputs.lights);
-                data.media = readMedia(builder, inputs.media);
-                data.depth = builder.read(inputs.gbuffer.depth);
-                data.inScatter = builder.create(
-                    "gi.@name@.inScatter",
-                    fg::texture2D(fg::Format::RGBA32F, inputs.view.width, inputs.view.height));
-                data.params = {inputs.lights.lightCount, uint32_t(settings_.directions), 0, 0};
-            },
-            [](const Data& data, fg::PassContext& context) {
-                auto command = context.compute("gi/@name@/march.comp",
-                                               {{"PHASE_GROUPS", int32_t(data.media.phaseGroups)},
-                                                {"MEDIA_KINDS", mediaKinds(data.media, true)},
-                                                {"SOFT_SHADOWS", data.lights.softShadows}});
-                bindView(command, data.view);
-                bindLights(command, data.lights);
-                bindMedia(command, data.media);
-                command.bind("depth", data.depth)
-                    .bind("inScatter", data.inScatter)
-                    .params(data.params)
-                    .dispatchOver(data.inScatter);
-            })
-        .inScatter;
+    outputs.inMedia = addLitMarch(
+        graph, inputs, {"gi.@name@.march", "gi.@name@.inScatter", "gi/@name@/march.comp"}, params);
     return outputs;
 }
 

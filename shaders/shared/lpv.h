@@ -71,7 +71,11 @@ struct LpvLevels {
 
 struct LpvParams {
     LpvGrid grid;
-    vec4 classWeights; // of all directions of a class together; w: 0: light ends at the first medium or surface that it meets, else 1
+    vec4 classWeights; // of all directions of a class together
+    float onward; // 1; 0: light ends at the first medium or surface that it meets
+    float padding0;
+    float padding1;
+    float padding2;
     LpvDirection directions[26];
 };
 

@@ -4,15 +4,12 @@
 #include "shared/types.h"
 TYNDALL_SHARED_BEGIN
 
+// Uniform block `Technique`.
 struct OctavesParams {
-    uint lightCount;
     uint last;               // octaves 1 to `last`; octave 0 is single scattering, which the engine's own march computes
     float scatteringFactor;
     float extinctionFactor;
     float phaseFactor;
-    uint media; // as MarchParams.media
-    uint padding0;
-    uint padding1;
 };
 
 TYNDALL_SHARED_END

@@ -58,7 +58,7 @@ struct VplParams {
     uint mediaInView; // 0: the picture is seen through none
     uint lost;        // 1: lights give what the bound takes away from them, and nothing else
     float mediumClampSquared; // m²: 1/b in the content from surface to medium
-    uint nearLight; // bits: what the bound takes away and no step makes up for is in `VplNear`, 1: of surfaces, 2: of media
+    uint nearLight; // kVplNearSurfaces and so on: what the bound takes away there and no step makes up for is in `VplNear`
     // Which lights count on surfaces and in media, a bit for each of kVplOfSurfaces and so on: each is the light of one term there.
     uint surfaceTerms, mediaTerms;
     uint upToFreePath; // 1: in a medium 1/b reaches no farther than the free path there
@@ -68,6 +68,9 @@ struct VplParams {
 TYNDALL_CONST uint kVplOfSurfaces = 0u, kVplOfMedia = 1u;           // LSSE, LSVE; LVSE, LVVE
 TYNDALL_CONST uint kVplLaterOfSurfaces = 2u, kVplLaterOfMedia = 3u; // LXSSE, LXSVE; LXVSE, LXVVE
 TYNDALL_CONST uint kVplAllTerms = 15u;
+
+TYNDALL_CONST uint kVplNearSurfaces = 1u;
+TYNDALL_CONST uint kVplNearMedia = 2u;
 
 struct VplShowParams {
     uint what;                                    // kVplShowLights and so on

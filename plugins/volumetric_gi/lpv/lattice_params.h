@@ -12,7 +12,7 @@ namespace tyndall::volumetric_gi {
     gpu::LpvParams params{};
     params.grid.size = {size, repeats};
     params.grid.lowest = {lowest, cell};
-    params.classWeights.w = 1;
+    params.onward = 1;
     for (size_t j = 0; j < kLatticeDirections; ++j) {
         const LatticeDirection& d = latticeDirections()[j];
         params.directions[j].unit = vec4(vec3(d.unit), float(d.weight));

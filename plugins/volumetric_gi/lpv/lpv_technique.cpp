@@ -211,7 +211,7 @@ plugin::FrameOutputs LpvTechnique::addPasses(fg::FrameGraph& graph,
     }
     std::vector<LatticeLevel> levels = placeLattices(placement);
     for (LatticeLevel& level : levels) {
-        level.params.classWeights.w = once ? 0 : 1;
+        level.params.onward = once ? 0 : 1;
         level.key = fg::mixHash(level.key, once ? inputs.terms : 0);
     }
     const SharedPlaces places = sharePlaces(levels);

@@ -1,6 +1,7 @@
 #include "volumetric_gi/octaves/octaves_technique.h"
 
 #include "shared/octaves.h"
+#include "volumetric_gi/shared/lit_march.h"
 
 namespace tyndall::volumetric_gi {
 namespace {
@@ -52,52 +53,12 @@ plugin::SettingsTable OctavesTechnique::settings() {
 
 plugin::FrameOutputs OctavesTechnique::addPasses(fg::FrameGraph& graph,
                                                  const plugin::FrameInputs& inputs) {
-    const OctavesSettings& settings = settings_;
-    struct Data {
-        ViewResources view;
-        LightResources lights;
-        MediaResources media;
-        fg::TextureHandle depth, inScatter;
-        gpu::OctavesParams params;
-    };
+    const gpu::OctavesParams params{uint32_t(settings_.count), settings_.scatteringFactor,
+                                    settings_.extinctionFactor, settings_.phaseFactor};
     plugin::FrameOutputs outputs;
-    outputs.inMedia = graph
-        .addPass<Data>(
-            "gi.octaves.march",
-            [&](fg::Builder& builder, Data& data) {
-                if (inputs.media.count == 0) return builder.skip("no medium in the scene");
-                if (settings.count == 0) return builder.skip("setting octaves.count is 0");
-                if (inputs.lights.lightCount == 0) return builder.skip("no light in the scene");
-                data.view = inputs.view;
-                data.lights = readLights(builder, inputs.lights);
-                data.media = readMedia(builder, inputs.media);
-                data.depth = builder.read(inputs.gbuffer.depth);
-                data.inScatter = builder.create(
-                    "gi.octaves.inScatter",
-                    fg::texture2D(fg::Format::RGBA32F, inputs.view.width, inputs.view.height));
-                data.params = {inputs.lights.lightCount,
-                               uint32_t(settings.count),
-                               settings.scatteringFactor,
-                               settings.extinctionFactor,
-                               settings.phaseFactor,
-                               inputs.kinds,
-                               0,
-                               0};
-            },
-            [](const Data& data, fg::PassContext& context) {
-                auto command = context.compute("gi/octaves/march.comp",
-                                               {{"PHASE_GROUPS", int32_t(data.media.phaseGroups)},
-                                                {"MEDIA_KINDS", mediaKinds(data.media, true)},
-                                                {"SOFT_SHADOWS", data.lights.softShadows}});
-                bindView(command, data.view);
-                bindLights(command, data.lights);
-                bindMedia(command, data.media);
-                command.bind("depth", data.depth)
-                    .bind("inScatter", data.inScatter)
-                    .params(data.params)
-                    .dispatchOver(data.inScatter);
-            })
-        .inScatter;
+    outputs.inMedia = addLitMarch(
+        graph, inputs, {"gi.octaves.march", "gi.octaves.inScatter", "gi/octaves/march.comp"},
+        params, settings_.count == 0 ? "setting octaves.count is 0" : nullptr);
     return outputs;
 }
 

@@ -99,9 +99,6 @@ VplSettings asInThePaper(VplSettings settings) {
     return settings;
 }
 
-/// Bits of VplParams::nearLight.
-constexpr uint32_t kNearSurfaces = 1, kNearMedia = 2;
-
 bool converges(const plugin::FrameInputs& inputs) {
     return (inputs.view.data.flags & gpu::kViewConverge) != 0;
 }
@@ -236,7 +233,7 @@ void VplTechnique::makeNear(const plugin::FrameInputs& inputs) {
     order.first = inputs.view.data.frameIndex * order.paths;
     order.onSurfaces = (inputs.terms & kIndirectOnSurfaces) != 0;
     order.inMedia = (inputs.terms & ~kIndirectOnSurfaces) != 0 &&
-                    (params.nearLight & kNearMedia) != 0 && inputs.media.count > 0 &&
+                    (params.nearLight & gpu::kVplNearMedia) != 0 && inputs.media.count > 0 &&
                     inputs.transmittance; // else none is in view
     order.clamps = {metres(params.surfaceClampSquared), metres(params.clampSquared),
                     metres(params.mediumClampSquared), double(params.relaxed)};
@@ -268,8 +265,8 @@ void VplTechnique::setClamps(const plugin::FrameInputs& inputs, gpu::VplParams& 
     // Where paths bring what it takes away, it costs no light, and stays wide for less noise.
     params.nearLight = 0;
     if (followsWhatIsMissed(inputs)) {
-        params.nearLight = kNearSurfaces;
-        if (inputs.kinds == kAllMedia) params.nearLight |= kNearMedia; // paths see all media
+        params.nearLight = gpu::kVplNearSurfaces;
+        if (inputs.kinds == kAllMedia) params.nearLight |= gpu::kVplNearMedia; // paths see all media
     }
     params.surfaceClampSquared = params.nearLight != 0
                                      ? squared(meanDistanceOf(set_.positions, scene_.content(), 1) *

@@ -65,7 +65,7 @@ void main() {
     // The coarsest level of a texture is its mean.
     vec3 colour = material.baseColor.rgb;
     if (material.baseColorTexture.offset.w != 0.0) colour *= textureLod(baseColorTexture, vec2(0.5), 100.0).rgb;
-    colour *= params.classWeights.w;
+    colour *= params.onward;
     uint cells = cellCount();
     for (uint i = gl_LocalInvocationID.x; i < uint(span.x * span.y * span.z); i += 64u) {
         ivec3 at = first + ivec3(i % uint(span.x), i / uint(span.x) % uint(span.y), i / uint(span.x * span.y));

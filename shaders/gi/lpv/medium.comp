@@ -36,7 +36,7 @@ void main() {
     float cosine = meanOf(forward) / max(meanOf(scattering), 1e-30);
     medium[kLpvTrueDepth * cells + self] = vec4(extinction * params.grid.lowest.w, cosine);
     medium[kLpvTrueAlbedo * cells + self] = vec4(clamp(scattering / max(extinction, vec3(1e-30)), 0.0, 1.0), 0.0);
-    if (params.classWeights.w == 0.0) { // what is scattered is lost, forwards, too
+    if (params.onward == 0.0) { // what is scattered is lost, forwards, too
         scattering = vec3(0.0);
         forward = vec3(0.0);
     }

@@ -8,7 +8,7 @@ layout(std430) readonly buffer VplNear { vec4 vplNear[]; }; // nits that neither
 
 /// Of the square that a pixel lies in.
 vec3 nearLightOf(ivec2 pixel, ivec2 size) {
-    if ((vpl.nearLight & 2u) == 0u) return vec3(0.0);
+    if ((vpl.nearLight & kVplNearMedia) == 0u) return vec3(0.0);
     ivec2 square = pixel / int(params.factor);
     int across = (size.x + int(params.factor) - 1) / int(params.factor);
     return vplNear[square.y * across + square.x].rgb;

@@ -33,7 +33,7 @@ float surfaceLikeness(Receiver r, Receiver other, float distance) {
     return f4 * f4 / (1.0 + offPlane / params.depthTolerance) / (1.0 + dot(way, way) / (kFar * kFar));
 }
 
-vec3 nearLightOf(ivec2 square, int squaresAcross) { return (vpl.nearLight & 1u) != 0u ? vplNear[square.y * squaresAcross + square.x].rgb : vec3(0.0); }
+vec3 nearLightOf(ivec2 square, int squaresAcross) { return (vpl.nearLight & kVplNearSurfaces) != 0u ? vplNear[square.y * squaresAcross + square.x].rgb : vec3(0.0); }
 
 void addSquare(inout SurfaceLight sum, ivec2 square, ivec2 right, float weight) {
     sum.diffuse += weight * texelFetch(squares, square, 0).rgb;

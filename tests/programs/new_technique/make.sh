@@ -28,8 +28,8 @@ broken "$(shader doubled)" 's/once \* around/2.0 * &/'
 # Nothing casts a shadow.
 broken "$(shader leaking)" 's/^#include "media\/march.glsl"/#include "lighting\/shadow.glsl"\n#define shadowVisibility(light, position, normal, u) 1.0\n&/'
 # Right on average, and the same in each frame: one pixel in 16 has the light of 16.
-broken "$(shader noisy)" 's/once \* around/(pixelRandom(pixel, 7u).x < 0.0625 ? 16.0 : 0.0) * &/'
-broken "$(code misplaced)" 's/outputs.inMedia = graph/outputs.onSurfaces = graph/'
+broken "$(shader noisy)" 's/once \* around/(pixelRandom(number, 7u).x < 0.0625 ? 16.0 : 0.0) * &/'
+broken "$(code misplaced)" 's/outputs.inMedia = addLitMarch/outputs.onSurfaces = addLitMarch/'
 # Shows the picture of the frame before.
 broken "$(code late)" '/^    return outputs;/i\
     if (graph.isAbsent(outputs.inMedia)) return outputs;\
