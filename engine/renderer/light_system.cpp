@@ -14,7 +14,7 @@
 namespace tyndall {
 namespace {
 
-constexpr double kNearestPart = 1e-5; // of the scene's radius: no inverse square below it
+constexpr double kNearestPart = 1e-5; // of the radius of what is near: no inverse square below it
 constexpr size_t kManyLights = 64;    // up to so many, the cutoff drops nothing
 constexpr float kWidestDisc = 1.5f;   // radians: a sun's angular radius stays below a half-space
 
@@ -156,33 +156,33 @@ void LightSystem::collect(const LightFrame& frame) {
         sceneNotes_.clear();
         const std::vector<dmat4> transforms = scene.worldTransforms();
         const std::vector<bool> visible = scene.worldVisibility();
-        Bounds bounds = scene.worldBounds();
         for (int node = 0; node < int(scene.nodes.size()); ++node) {
             const int light = scene.nodes[size_t(node)].light;
             if (light == kNone || !visible[size_t(node)]) continue;
-            const size_t before = collected_.size();
             collectLight(scene.lights.at(size_t(light)), transforms[size_t(node)], node,
                          frame.renderOrigin);
-            if (collected_.size() > before && collected_.back().data.type != gpu::kLightDirectional)
-                bounds.include(dvec3(transforms[size_t(node)][3]));
         }
         EmissiveLights emissive = findEmissiveLights(scene, transforms, visible);
         for (const EmissiveLight& found : emissive.lights)
             collectLight(found.light, found.worldFromLight, found.node, frame.renderOrigin);
         std::move(emissive.notes.begin(), emissive.notes.end(), std::back_inserter(sceneNotes_));
-        sceneRadius_ = bounds.empty() ? 0.0 : 0.5 * glm::length(bounds.extent());
-        if (!(sceneRadius_ > 0) || !std::isfinite(sceneRadius_))
-            sceneRadius_ = std::max(double(frame.view->data.cameraForward.w), 1e-6);
-        for (Collected& c : collected_)
-            if (c.data.type == gpu::kLightPoint || c.data.type == gpu::kLightSpot)
-                c.data.intensity.w = float(kNearestPart * sceneRadius_);
     }
     if (scene_ != &scene || seenEnvironment_ != scene.environment.version) {
         seenEnvironment_ = scene.environment.version;
         environment_ = EnvironmentSampler(scene.environment);
     }
     collectMedia(frame);
+    setScale(frame);
     scene_ = &scene;
+}
+
+void LightSystem::setScale(const LightFrame& frame) {
+    reachRadius_ = frame.withLamps.empty() ? 0.0 : 0.5 * glm::length(frame.withLamps.extent());
+    if (!(reachRadius_ > 0) || !std::isfinite(reachRadius_))
+        reachRadius_ = std::max(double(frame.view->data.cameraForward.w), 1e-6);
+    for (Collected& c : collected_)
+        if (c.data.type == gpu::kLightPoint || c.data.type == gpu::kLightSpot)
+            c.data.intensity.w = float(kNearestPart * reachRadius_);
 }
 
 /// A grid's light is summed up voxel by voxel: only when a medium has changed.
@@ -236,7 +236,7 @@ void LightSystem::addMedia(const LightFrame& frame, std::vector<Collected>& all)
             c.data.position = vec4(vec3(light.position - frame.renderOrigin), 0);
             c.data.direction = vec4(0, 0, -1, float(light.radius));
             // In averaged frames the rest comes from shaders/media/near_glow.glsl.
-            const double nearest = kNearestPart * sceneRadius_;
+            const double nearest = kNearestPart * reachRadius_;
             c.data.intensity =
                 vec4(vec3(light.intensity),
                      float(converge ? std::max(nearest, media_.nearDistance) : nearest));
@@ -256,7 +256,7 @@ void LightSystem::setReach(std::vector<Collected>& all, bool converge) const {
         if (c.data.type != gpu::kLightDirectional) ++local, strength += c.strength;
     if (converge || !(lightSettings_.cutoff > 0) || local <= kManyLights) return;
     const double least =
-        double(lightSettings_.cutoff) * strength / (sceneRadius_ * sceneRadius_) / double(local);
+        double(lightSettings_.cutoff) * strength / (reachRadius_ * reachRadius_) / double(local);
     for (Collected& c : all) {
         if (c.data.type == gpu::kLightDirectional) continue;
         const double size =
@@ -279,7 +279,7 @@ void LightSystem::chooseShadows(const LightFrame& frame, const std::vector<Colle
     for (uint32_t i = 0; i < all.size(); ++i) {
         if (!all[i].castsShadows || (lights_[i].flags & gpu::kLightFromEnvironment) != 0) continue;
         const double distance =
-            std::max(glm::length(dvec3(lights_[i].position) - eye), 1e-2 * sceneRadius_);
+            std::max(glm::length(dvec3(lights_[i].position) - eye), 1e-2 * reachRadius_);
         const bool directional = lights_[i].type == gpu::kLightDirectional;
         candidates.push_back(
             {i, directional ? all[i].strength : all[i].strength / (distance * distance)});
@@ -294,7 +294,7 @@ void LightSystem::chooseShadows(const LightFrame& frame, const std::vector<Colle
         chosen.push_back(candidates[i].light);
     for (uint32_t i = 0; i < all.size(); ++i)
         if ((lights_[i].flags & gpu::kLightFromEnvironment) != 0) chosen.push_back(i);
-    plan_ = planShadows(lights_, chosen, {frame.casters, frame.view}, shadowSettings_);
+    plan_ = planShadows(lights_, chosen, {frame.casters, frame.surroundings, frame.view}, shadowSettings_);
     if (plan_.lightsDropped > 0)
         notes_.push_back(fmt::format(
             "{} lights cast no shadows: their maps do not fit into shadows.atlasLayers = {} layers",

@@ -27,7 +27,8 @@ class GpuScene;
 struct LightFrame {
     const Scene* scene = nullptr;
     dvec3 renderOrigin{0}; // world
-    Bounds casters;        // of the surfaces that may cast shadows, render space; empty without
+    std::span<const Bounds> casters; // of each surface that may cast shadows, render space
+    Bounds surroundings, withLamps;  // SceneReach, render space
     const ViewResources* view = nullptr; // its flags say whether frames are averaged
 };
 
@@ -68,6 +69,7 @@ private:
         float reach = 0;     // metres from its centre; 0: everywhere
     };
     void collect(const LightFrame& frame);
+    void setScale(const LightFrame& frame);
     void collectLight(const Light& light, const dmat4& worldFromNode, int node,
                       const dvec3& origin);
     void collectMedia(const LightFrame& frame);
@@ -82,7 +84,7 @@ private:
     SceneVersions seen_;
     Version seenEnvironment_ = 0;
     dvec3 seenOrigin_{0};
-    double sceneRadius_ = 1;
+    double reachRadius_ = 1; // metres, of what is near and the lamps there
     std::vector<Collected> collected_;
     EnvironmentSampler environment_;
     MediumEmitters media_;

@@ -38,6 +38,14 @@ SceneTraits sceneTraits(const Scene& scene, bool mediaEnabled) {
     return traits;
 }
 
+/// The cone around all that the camera sees.
+Viewer viewerAt(const CameraPose& pose, double aspect) {
+    const dvec3 back(pose.worldFromCamera[2]);
+    const double halfDiagonal = std::tan(0.5 * pose.camera.yfov) * std::hypot(1, aspect);
+    return {dvec3(pose.worldFromCamera[3]), -glm::normalize(back),
+            pose.camera.type == CameraType::Orthographic ? 0.5 * kPi : std::atan(halfDiagonal)};
+}
+
 void Renderer::Impl::registerSettings() {
     settings.add({tyndall::gbufferSettings(), &gbufferSettings});
     settings.add({tyndall::surfaceLightSettings(), &surfaceLightSettings});
@@ -50,19 +58,25 @@ void Renderer::Impl::registerSettings() {
     settings.add({tyndall::techniqueSettings(), &techniqueSettings});
 }
 
+void Renderer::Impl::updateReach(const Viewer& viewer) {
+    const SceneVersions& now = scene->versions;
+    const auto parts = [](const SceneVersions& v) {
+        return std::tie(v.structure, v.transforms, v.meshes, v.media, v.lights);
+    };
+    if (parts(now) != parts(seenClusters)) {
+        clusters = findClusters(*scene);
+        seenClusters = now;
+    }
+    reach = reachOf(clusters, viewer);
+}
+
 /// Uploads what changed and makes this frame's view, lights and lists.
 Result<void> Renderer::Impl::updateScene(const FrameRequest& request, const CameraPose& pose) {
-    const SceneVersions& now = scene->versions;
-    if (std::tie(now.structure, now.transforms, now.meshes, now.media) !=
-        std::tie(seenBounds.structure, seenBounds.transforms, seenBounds.meshes,
-                 seenBounds.media)) {
-        sceneBounds = scene->worldBounds();
-        contentBounds = scene->contentBounds();
-        seenBounds = now;
-    }
     const dvec3 eye(pose.worldFromCamera[3]);
-    renderOrigin = chooseRenderOrigin(eye, sceneBounds, renderOrigin);
-    Bounds around = sceneBounds;
+    updateReach(viewerAt(pose, double(request.width) / double(request.height)));
+    renderOrigin = chooseRenderOrigin(eye, reach.surroundings, renderOrigin);
+    Bounds around = reach.surroundings;
+    around.include(reach.seen);
     around.include(eye);
     const double radius = std::max(0.5 * glm::length(around.extent()), 100 * pose.camera.znear);
     order.view = makeView({&pose.camera, pose.worldFromCamera, renderOrigin, radius, request.width,
@@ -74,9 +88,13 @@ Result<void> Renderer::Impl::updateScene(const FrameRequest& request, const Came
     if (Result<void> done = media.update(*scene, renderOrigin); !done) return done;
     if (Result<void> done = environment.update(*scene); !done) return done;
     if (Result<void> done = blended.update(surfaces, order.view); !done) return done;
-    lights.update({scene, renderOrigin, surfaces.bounds(), &order.view});
     surfaceBounds.clear();
     for (const DrawItem& item : surfaces.items()) surfaceBounds.push_back(item.bounds);
+    const auto toRender = [&](const Bounds& world) {
+        return Bounds{world.minimum - renderOrigin, world.maximum - renderOrigin};
+    };
+    lights.update({scene, renderOrigin, surfaceBounds, toRender(reach.surroundings),
+                   toRender(reach.withLamps), &order.view});
     order.surfaceBounds = surfaceBounds;
     return {};
 }
@@ -121,10 +139,8 @@ SettingsRegistry& Renderer::settings() { return impl_->settings; }
 std::span<const Technique> Renderer::techniques() const { return impl_->techniques; }
 
 Result<void> Renderer::setScene(const Scene& scene) {
-    if (impl_->scene != &scene) impl_->seenBounds = {};
+    if (impl_->scene != &scene) impl_->seenClusters = {};
     impl_->scene = &scene;
-    impl_->sceneBounds = scene.worldBounds();
-    impl_->contentBounds = scene.contentBounds();
     impl_->average = {};
     return {};
 }
@@ -156,10 +172,10 @@ plugin::SceneState Renderer::Impl::describeScene() const {
     const auto toRender = [&](const dvec3& p, float(&out)[4]) {
         for (int axis = 0; axis < 3; ++axis) out[axis] = float(p[axis] - renderOrigin[axis]);
     };
-    toRender(sceneBounds.minimum, state.boundsMinimum);
-    toRender(sceneBounds.maximum, state.boundsMaximum);
-    toRender(contentBounds.minimum, state.contentMinimum);
-    toRender(contentBounds.maximum, state.contentMaximum);
+    toRender(reach.surroundings.minimum, state.boundsMinimum);
+    toRender(reach.surroundings.maximum, state.boundsMaximum);
+    toRender(reach.content.minimum, state.contentMinimum);
+    toRender(reach.content.maximum, state.contentMaximum);
     return state;
 }
 

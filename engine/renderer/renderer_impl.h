@@ -9,6 +9,7 @@
 #include "renderer/renderer.h"
 #include "renderer/surface_drawer.h"
 #include "renderer/technique_settings.h"
+#include "scene/scene_reach.h"
 
 namespace tyndall {
 
@@ -53,8 +54,9 @@ struct Renderer::Impl {
     std::vector<Technique> techniques;
 
     const Scene* scene = nullptr;
-    Bounds sceneBounds, contentBounds; // world
-    SceneVersions seenBounds;          // of what sceneBounds was made from
+    SceneClusters clusters;
+    SceneVersions seenClusters; // of what clusters was made from
+    SceneReach reach;           // of this frame's view
     dvec3 renderOrigin{0};
     std::vector<Bounds> surfaceBounds;
     Accumulation average;
@@ -65,6 +67,7 @@ struct Renderer::Impl {
     void registerSettings();
     // The steps of a frame, in order.
     Result<CameraPose> choosePose(const FrameRequest& request) const;
+    void updateReach(const Viewer& viewer);
     Result<void> updateScene(const FrameRequest& request, const CameraPose& pose);
     std::string averageKey(const FrameRequest& request) const;
     plugin::SceneState describeScene() const;

@@ -13,7 +13,7 @@ namespace {
 constexpr int kBorder = 4;       // texels around a map that only filters see
 constexpr int kSmallestMap = 16; // texels
 constexpr double kNearPart =
-    1e-5; // near distance of perspective maps, of the scene's radius; reversed depth bears it
+    1e-5; // near distance of perspective maps, of the radius of what is near; reversed depth bears it
 constexpr double kWidestSpot = kPi / 3; // half angle; wider ones are drawn as six faces
 
 struct Frustum {
@@ -65,23 +65,45 @@ struct Window {
     dvec2 centre{0}, halfSize{0};
 };
 
+/// What light from infinity falls on, and what may stand in its way.
+struct Casters {
+    Bounds near; // of those that are near: what the maps must show
+    std::vector<Bounds> beyond;
+    const ViewResources* view = nullptr;
+};
+
+Casters castersOf(const ShadowRequest& request) {
+    Casters casters;
+    casters.view = request.view;
+    Bounds all;
+    for (const Bounds& caster : request.casters) all.include(caster);
+    casters.near = {glm::max(all.minimum, request.surroundings.minimum),
+                    glm::min(all.maximum, request.surroundings.maximum)};
+    if (casters.near.empty()) casters.near = all;
+    for (const Bounds& caster : request.casters)
+        if (!casters.near.contains(caster.minimum) || !casters.near.contains(caster.maximum))
+            casters.beyond.push_back(caster);
+    return casters;
+}
+
 /// Directional light: what surrounds its maps.
 struct LightSpace {
     dvec3 right, up, forward;
-    double nearest = 0, range = 0; // along forward, of all casters
-    Window casters;
+    double nearest = 0, range = 0; // along forward, from the first caster to the end of what is near
+    Window near;
 };
 
-LightSpace lightSpaceOf(const dvec3& forward, const Bounds& casters) {
+/// Casters that stand before what is near are in its maps, however far away.
+LightSpace lightSpaceOf(const dvec3& forward, const Casters& casters) {
     LightSpace space;
     space.forward = forward;
     perpendiculars(forward, space.right, space.up);
     dvec3 low(std::numeric_limits<double>::infinity()),
         high(-std::numeric_limits<double>::infinity());
     for (int i = 0; i < 8; ++i) {
-        const dvec3 corner((i & 1) ? casters.maximum.x : casters.minimum.x,
-                           (i & 2) ? casters.maximum.y : casters.minimum.y,
-                           (i & 4) ? casters.maximum.z : casters.minimum.z);
+        const dvec3 corner((i & 1) ? casters.near.maximum.x : casters.near.minimum.x,
+                           (i & 2) ? casters.near.maximum.y : casters.near.minimum.y,
+                           (i & 4) ? casters.near.maximum.z : casters.near.minimum.z);
         const dvec3 p(glm::dot(space.right, corner), glm::dot(space.up, corner),
                       glm::dot(forward, corner));
         low = glm::min(low, p);
@@ -89,10 +111,22 @@ LightSpace lightSpaceOf(const dvec3& forward, const Bounds& casters) {
     }
     // A little room, so that nothing lies on the edge and a flat scene has depth.
     const double room = 1e-3 * glm::length(high - low);
-    space.nearest = low.z - room;
-    space.range = std::max(high.z - low.z + 2.0 * room, 1e-30);
-    space.casters.centre = 0.5 * dvec2(low + high);
-    space.casters.halfSize = 0.5 * dvec2(high - low) + room;
+    space.near.centre = 0.5 * dvec2(low + high);
+    space.near.halfSize = 0.5 * dvec2(high - low) + room;
+    // Depth is reversed: it is precise at the end of what is near, wherever the first caster stands.
+    double first = low.z;
+    for (const Bounds& caster : casters.beyond) {
+        const dvec3 centre = caster.centre(), half = 0.5 * caster.extent();
+        const auto along = [&](const dvec3& axis) {
+            return dvec2(glm::dot(axis, centre), glm::dot(glm::abs(axis), half));
+        };
+        const dvec2 x = along(space.right), y = along(space.up), z = along(forward);
+        if (std::abs(x[0] - space.near.centre.x) <= space.near.halfSize.x + x[1] &&
+            std::abs(y[0] - space.near.centre.y) <= space.near.halfSize.y + y[1])
+            first = std::min(first, z[0] - z[1]);
+    }
+    space.nearest = first - room;
+    space.range = std::max(high.z - first + 2.0 * room, 1e-30);
     return space;
 }
 
@@ -115,7 +149,7 @@ struct Slice {
     dvec3 centre;
     double radius;
 };
-std::vector<Slice> viewSlices(const gpu::ViewData& view, const Bounds& casters,
+std::vector<Slice> viewSlices(const gpu::ViewData& view, const Bounds& near,
                               const ShadowSettings& settings) {
     std::vector<Slice> slices;
     if ((view.flags & gpu::kViewOrthographic) != 0 || settings.cascades < 2) return slices;
@@ -123,13 +157,13 @@ std::vector<Slice> viewSlices(const gpu::ViewData& view, const Bounds& casters,
     double farthest = 0;
     for (int i = 0; i < 8; ++i)
         farthest =
-            std::max(farthest, glm::length(dvec3((i & 1) ? casters.maximum.x : casters.minimum.x,
-                                                 (i & 2) ? casters.maximum.y : casters.minimum.y,
-                                                 (i & 4) ? casters.maximum.z : casters.minimum.z) -
+            std::max(farthest, glm::length(dvec3((i & 1) ? near.maximum.x : near.minimum.x,
+                                                 (i & 2) ? near.maximum.y : near.minimum.y,
+                                                 (i & 4) ? near.maximum.z : near.minimum.z) -
                                            eye));
     // In steps of a quarter octave of the scene's size, so that small moves change nothing; between the steps lies the centre
     // of the scene, a place where cameras like to be.
-    const double diagonal = glm::length(casters.extent());
+    const double diagonal = glm::length(near.extent());
     if (!(diagonal > 0)) return slices;
     farthest =
         diagonal * std::exp2((std::ceil(4.0 * std::log2(farthest / diagonal) + 0.5) - 0.5) / 4.0);
@@ -170,20 +204,20 @@ Window snappedWindow(const LightSpace& space, const Slice& slice, int side) {
     return {glm::round(centre / texel) * texel, dvec2(0.5 * texel * double(side - 2 * kBorder))};
 }
 
-std::vector<Frustum> directionalViews(const gpu::LightData& light, const ShadowRequest& request,
+std::vector<Frustum> directionalViews(const gpu::LightData& light, const Casters& casters,
                                       const ShadowSettings& settings, int side,
                                       const dvec2& jitter) {
     const dvec3 forward =
         glm::normalize(dvec3(light.samplePoint.w > 0 ? light.samplePoint : light.direction));
-    const LightSpace space = lightSpaceOf(forward, request.casters);
+    const LightSpace space = lightSpaceOf(forward, casters);
     std::vector<Frustum> views;
     if ((light.flags & gpu::kLightFromEnvironment) == 0)
-        for (const Slice& slice : viewSlices(request.view->data, request.casters, settings)) {
-            if (slice.radius >= std::max(space.casters.halfSize.x, space.casters.halfSize.y)) break;
+        for (const Slice& slice : viewSlices(casters.view->data, casters.near, settings)) {
+            if (slice.radius >= std::max(space.near.halfSize.x, space.near.halfSize.y)) break;
             views.push_back(
                 parallelFrustum(space, snappedWindow(space, slice, side), side, jitter));
         }
-    views.push_back(parallelFrustum(space, space.casters, side, jitter));
+    views.push_back(parallelFrustum(space, space.near, side, jitter));
     return views;
 }
 
@@ -299,10 +333,10 @@ gpu::ShadowView describe(const Frustum& frustum, int count, bool soft,
 }
 
 /// How many maps the light gets; the same for every size of them.
-int viewCount(const gpu::LightData& light, const ShadowRequest& request,
+int viewCount(const gpu::LightData& light, const Casters& casters,
               const ShadowSettings& settings) {
     if (light.type == gpu::kLightDirectional)
-        return int(directionalViews(light, request, settings, 256, dvec2(0)).size());
+        return int(directionalViews(light, casters, settings, 256, dvec2(0)).size());
     return int(localViews(light, 1.0, 256, dvec2(0)).size());
 }
 
@@ -356,9 +390,10 @@ ShadowPlan planShadows(std::span<gpu::LightData> lights, std::span<const uint32_
     if (request.casters.empty() || chosen.empty() || !settings.enabled) return plan;
     CHECK(request.view, "shadows are planned for a view");
 
+    const Casters casters = castersOf(request);
     std::vector<PlannedLight> planned;
     for (const uint32_t light : chosen)
-        planned.push_back({light, 0, viewCount(lights[light], request, settings)});
+        planned.push_back({light, 0, viewCount(lights[light], casters, settings)});
     fitAtlas(lights, planned, settings, plan);
     if (planned.empty()) return plan;
     // Not by importance: places in the atlas, and with them kept maps, stay while importances change.
@@ -369,14 +404,14 @@ ShadowPlan planShadows(std::span<gpu::LightData> lights, std::span<const uint32_
     const gpu::ViewData& view = request.view->data;
     const bool converge = (view.flags & gpu::kViewConverge) != 0;
     // The longest way that light may take here: distances below a part of it cannot be told from zero.
-    const double radius = 0.5 * glm::length(request.casters.extent());
+    const double radius = 0.5 * glm::length(casters.near.extent());
     Atlas atlas(plan.atlasSize, plan.layers);
     for (const PlannedLight& p : planned) {
         gpu::LightData& light = lights[p.light];
         const dvec2 jitter = jitterOf(view, p.light);
         const std::vector<Frustum> frusta =
             light.type == gpu::kLightDirectional
-                ? directionalViews(light, request, settings, p.side, jitter)
+                ? directionalViews(light, casters, settings, p.side, jitter)
                 : localViews(light, std::max(kNearPart * radius, 1e-30), p.side, jitter);
         CHECK(int(frusta.size()) <= p.count, "a light has more shadow maps than were counted");
         const bool soft = !converge && (light.type == gpu::kLightRect || light.direction.w > 0);

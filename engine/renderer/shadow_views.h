@@ -27,7 +27,8 @@ struct ShadowPlan {
 };
 
 struct ShadowRequest {
-    Bounds casters;                      // render space, of everything that may cast a shadow
+    std::span<const Bounds> casters;     // render space, of each surface that may cast a shadow
+    Bounds surroundings;                 // render space: what maps of light from infinity must show
     const ViewResources* view = nullptr; // cascades follow it; its flags and jitter are minded
 };
 

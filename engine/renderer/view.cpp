@@ -45,13 +45,15 @@ dmat4 withoutScale(const dmat4& worldFromCamera) {
 
 } // namespace
 
-dvec3 chooseRenderOrigin(const dvec3& cameraPosition, const Bounds& sceneBounds,
+dvec3 chooseRenderOrigin(const dvec3& cameraPosition, const Bounds& surroundings,
                          const dvec3& previousOrigin) {
+    constexpr double kFarthest = 8192; // metres: steps of single precision there are half a millimetre
     const double radius =
-        sceneBounds.empty() ? 1.0 : std::max(1e-3, 0.5 * glm::length(sceneBounds.extent()));
-    if (glm::length(cameraPosition - previousOrigin) < 8.0 * radius) return previousOrigin;
+        surroundings.empty() ? 1.0 : std::max(1e-3, 0.5 * glm::length(surroundings.extent()));
+    const double farthest = std::min(8.0 * radius, kFarthest);
+    if (glm::length(cameraPosition - previousOrigin) < farthest) return previousOrigin;
     // Close enough to the world's origin that single precision loses nothing: the common case, and the simplest numbers.
-    if (glm::length(cameraPosition) < 8.0 * radius) return dvec3(0);
+    if (glm::length(cameraPosition) < farthest) return dvec3(0);
     return glm::round(cameraPosition);
 }
 

@@ -9,9 +9,9 @@
 
 namespace tyndall {
 
-/// Whole metres near the camera, moved only when the camera is farther away than a few scene sizes, so that what was
-/// cached in render space stays valid while the camera flies about the scene.
-dvec3 chooseRenderOrigin(const dvec3& cameraPosition, const Bounds& sceneBounds,
+/// Whole metres near the camera, moved only when the camera is farther away than a few sizes of what is around it, and than single
+/// precision has millimetres for, so that what was cached in render space stays valid while the camera flies about.
+dvec3 chooseRenderOrigin(const dvec3& cameraPosition, const Bounds& surroundings,
                          const dvec3& previousOrigin);
 
 struct ViewRequest {

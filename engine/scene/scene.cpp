@@ -57,34 +57,37 @@ std::vector<bool> Scene::worldVisibility() const {
     return visible;
 }
 
-/// Of each visible mesh, instance and bounded medium; none is empty.
-std::vector<Bounds> Scene::worldBoxes() const {
+void Scene::forEachBox(const std::function<void(int, bool, const Bounds&)>& visit) const {
     const std::vector<dmat4> world = worldTransforms();
     const std::vector<bool> visible = worldVisibility();
-    std::vector<Bounds> boxes;
-    const auto add = [&](const Bounds& local, const dmat4& worldFromLocal) {
-        if (!local.empty()) boxes.push_back(local.transformed(worldFromLocal));
-    };
     for (size_t i = 0; i < nodes.size(); ++i) {
         if (!visible[i]) continue;
         const Node& node = nodes[i];
+        const auto add = [&](const Bounds& local, const dmat4& worldFromLocal, bool isMedium) {
+            if (!local.empty()) visit(int(i), isMedium, local.transformed(worldFromLocal));
+        };
         for (const int mesh : node.meshes) {
             const Bounds& local = meshes[size_t(mesh)].bounds;
-            if (node.instances.empty()) add(local, world[i]);
-            for (const dmat4& instance : node.instances) add(local, world[i] * instance);
+            if (node.instances.empty()) add(local, world[i], false);
+            for (const dmat4& instance : node.instances) add(local, world[i] * instance, false);
         }
-        if (node.medium != kNone) add(localBounds(media[size_t(node.medium)]), world[i]);
+        if (node.medium != kNone) add(localBounds(media[size_t(node.medium)]), world[i], true);
     }
-    return boxes;
 }
 
 Bounds Scene::worldBounds() const {
     Bounds bounds;
-    for (const Bounds& box : worldBoxes()) bounds.include(box);
+    forEachBox([&](int, bool, const Bounds& box) { bounds.include(box); });
     return bounds;
 }
 
 Bounds Scene::contentBounds() const {
+    std::vector<Bounds> boxes;
+    forEachBox([&](int, bool, const Bounds& box) { boxes.push_back(box); });
+    return contentOf(std::move(boxes));
+}
+
+Bounds contentOf(std::vector<Bounds> boxes) {
     constexpr double kManyTimes = 6;
     constexpr double kFlatScene = 0.25, kFlatBox = 0.05; // least extent over longest
     const auto longest = [](const Bounds& b) {
@@ -95,7 +98,6 @@ Bounds Scene::contentBounds() const {
         const dvec3 extent = b.extent();
         return std::min({extent.x, extent.y, extent.z}) <= ratio * longest(b);
     };
-    std::vector<Bounds> boxes = worldBoxes();
     std::sort(boxes.begin(), boxes.end(),
               [&](const Bounds& a, const Bounds& b) { return longest(a) < longest(b); });
     std::vector<Bounds> smaller(1); // of all boxes before each

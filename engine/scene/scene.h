@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -228,8 +229,11 @@ struct Scene {
     /// flat themselves.
     [[nodiscard]] Bounds contentBounds() const;
 
-private:
-    [[nodiscard]] std::vector<Bounds> worldBoxes() const;
+    /// Calls back with (node, is it the node's medium, box) for every visible mesh, instance and medium with an end. No box is empty.
+    void forEachBox(const std::function<void(int, bool, const Bounds&)>& visit) const;
 };
+
+/// The box around `boxes` without the landscape: see Scene::contentBounds().
+[[nodiscard]] Bounds contentOf(std::vector<Bounds> boxes);
 
 } // namespace tyndall

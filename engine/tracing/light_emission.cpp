@@ -33,6 +33,13 @@ std::vector<Bounds> boxesAround(const Bounds& content, const Bounds& whole) {
     return boxes;
 }
 
+/// As wide along each axis as the ball around it.
+Bounds cubeAround(const Bounds& box) {
+    if (box.empty()) return box;
+    const dvec3 half(0.5 * glm::length(box.extent()));
+    return {box.centre() - half, box.centre() + half};
+}
+
 /// Evenly on the shadow that a box casts along a direction: a point of a face that the direction goes in by.
 dvec3 pointOnShadow(const Bounds& box, const dvec3& direction, const dvec2& u) {
     const dvec3 shadow = projectedFaces(box, direction);
@@ -69,7 +76,9 @@ bool onShadow(const Bounds& box, const dvec3& point, const dvec3& direction) {
 
 } // namespace
 
-LightEmission::LightEmission(const TracerScene& scene, const Bounds& content) : scene_(scene) {
+LightEmission::LightEmission(const TracerScene& scene, const Bounds& content,
+                             const Bounds& surroundings)
+    : scene_(scene) {
     whole_ = scene.surfaces->bounds();
     bool endless = false;
     for (const MediumSource& medium : scene.media->media()) {
@@ -77,11 +86,15 @@ LightEmission::LightEmission(const TracerScene& scene, const Bounds& content) : 
         endless |= medium.endless();
     }
     content_ = content.empty() ? whole_ : content;
-    if (endless && !whole_.empty()) {
-        const dvec3 half(0.5 * glm::length(whole_.extent()));
-        whole_ = {whole_.centre() - half, whole_.centre() + half};
+    near_ = {glm::max(whole_.minimum, surroundings.minimum),
+             glm::min(whole_.maximum, surroundings.maximum)};
+    if (surroundings.empty() || near_.empty()) near_ = whole_;
+    if (endless) {
+        whole_ = cubeAround(whole_);
+        near_ = cubeAround(near_);
     }
-    boxes_ = boxesAround(content_, whole_);
+    boxes_ = boxesAround(content_, near_);
+    reachesBeyond_ = glm::length(whole_.extent()) > 2 * glm::length(near_.extent());
     const Lights& lights = *scene.lights;
     const auto add = [this](double power) { sums_.push_back(sums_.back() + std::max(0.0, power)); };
     const double area = meanProjectedArea(content_);
@@ -93,11 +106,12 @@ LightEmission::LightEmission(const TracerScene& scene, const Bounds& content) : 
     add(lights.glow().black() ? 0 : pointFlux(lights.glow().intensity()));
 }
 
-/// From outside of the ball around everything.
+/// From outside of the ball around what is near, for single precision has nothing to spare for ways from far away; but where something far away is in the
+/// way, from before that.
 Ray LightEmission::fromInfinity(const dvec3& direction, double choice, const dvec2& u,
                                 double& area) const {
     area = 0;
-    if (whole_.empty()) return {dvec3(0), direction};
+    if (near_.empty()) return {dvec3(0), direction};
     // Boxes that a direction sees from their edges have no shadow; all of them, where there is more than one.
     const auto shadowOf = [&](size_t box) { return projectedArea(boxes_[box], direction); };
     const size_t last = boxes_.size() - 1;
@@ -118,9 +132,14 @@ Ray LightEmission::fromInfinity(const dvec3& direction, double choice, const dve
             density += part / shadow;
     }
     area = density > 0 ? 1 / density : 0;
-    const double radius = 0.5 * glm::length(whole_.extent());
-    position -= (glm::dot(position - whole_.centre(), direction) + radius) * direction;
-    return {position, direction};
+    const auto outside = [&](const Bounds& box) {
+        const double radius = 0.5 * glm::length(box.extent());
+        return position - (glm::dot(position - box.centre(), direction) + radius) * direction;
+    };
+    const dvec3 start = outside(near_);
+    if (!reachesBeyond_ || !scene_.surfaces->occluded({start, -direction}, kInfinity, 0))
+        return {start, direction};
+    return {outside(whole_), direction};
 }
 
 EmittedRay LightEmission::sample(Sampler& sampler) const {

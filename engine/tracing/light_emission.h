@@ -11,8 +11,10 @@ namespace tyndall::tracing {
 /// fog that box is as large as the ball around it, whatever the direction; what the fog outside of it scatters is left out, but not what it takes away.
 class LightEmission {
 public:
-    /// `scene` must outlive it. `content`: what most rays of light from infinity are sampled towards; empty: everything alike.
-    explicit LightEmission(const TracerScene& scene, const Bounds& content = {});
+    /// `scene` must outlive it. `content`: what most rays of light from infinity are sampled towards; empty: everything alike. `surroundings`: what such rays
+    /// are sampled towards at all; empty: everything.
+    explicit LightEmission(const TracerScene& scene, const Bounds& content = {},
+                           const Bounds& surroundings = {});
 
     [[nodiscard]] bool black() const { return !(sums_.back() > 0); }
     /// Watts of all lights, the mean of the channels; bounds where textures, cones or windows dim them.
@@ -27,7 +29,8 @@ private:
                                    double& area) const;
 
     const TracerScene& scene_;
-    Bounds whole_, content_;    // around everything, and around what most rays are to meet
+    Bounds whole_, near_, content_; // around everything, what rays are to meet, and what most are
+    bool reachesBeyond_ = false;    // is `whole_` much larger than `near_`?
     std::vector<Bounds>
         boxes_; // that rays from infinity are sampled towards: content first, all last
     std::vector<double> sums_{0.0}; // cumulative power, as Lights counts them

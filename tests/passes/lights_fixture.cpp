@@ -201,7 +201,12 @@ void LightsTest::lookOnce(SceneMaker& maker, const std::vector<Probe>& probes,
     const Result<void> uploaded = gpuScene_->update(maker.scene, dvec3(0));
     ASSERT_TRUE(uploaded.ok()) << uploaded.message();
     fg::FrameGraph& graph = executor_->beginFrame();
-    lights_->update({&maker.scene, dvec3(0), gpuScene_->bounds(), &view});
+    std::vector<Bounds> casters;
+    for (const DrawItem& item : gpuScene_->items()) casters.push_back(item.bounds);
+    Bounds withLamps = maker.scene.worldBounds();
+    for (const Node& node : maker.scene.nodes)
+        if (node.light != kNone) withLamps.include(node.translation);
+    lights_->update({&maker.scene, dvec3(0), casters, maker.scene.worldBounds(), withLamps, &view});
     const LightResources resources = lights_->addPasses(graph, *gpuScene_, view, true);
     std::vector<vec4> data;
     for (const Probe& probe : probes) {

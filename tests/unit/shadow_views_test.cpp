@@ -71,7 +71,7 @@ ShadowPlan plan(std::vector<gpu::LightData>& lights, const Bounds& casters,
                 const ViewResources& view, const ShadowSettings& settings) {
     std::vector<uint32_t> all(lights.size());
     for (uint32_t i = 0; i < all.size(); ++i) all[i] = i;
-    return planShadows(lights, all, {casters, &view}, settings);
+    return planShadows(lights, all, {{&casters, casters.empty() ? 0u : 1u}, casters, &view}, settings);
 }
 
 TEST(ShadowViews, LastCascadeHoldsAllCasters) {

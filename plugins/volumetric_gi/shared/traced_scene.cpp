@@ -42,6 +42,15 @@ Keys keysOf(const Scene& scene, const dvec3& origin) {
     return keys;
 }
 
+Bounds boundsOf(const float (&minimum)[4], const float (&maximum)[4]) {
+    Bounds bounds;
+    for (int axis = 0; axis < 3; ++axis) {
+        bounds.minimum[axis] = double(minimum[axis]);
+        bounds.maximum[axis] = double(maximum[axis]);
+    }
+    return bounds;
+}
+
 /// Outwards to eighths of a power of two: what moves a little leaves it as it is.
 Bounds roughly(const Bounds& bounds) {
     if (bounds.empty()) return bounds;
@@ -125,22 +134,15 @@ void TracedScene::updateMedia(const Scene& scene, const dvec3& origin, bool useP
     otherMedia_ = std::move(useProxies ? actual : proxies);
 }
 
-void TracedScene::updateContent(const Scene& scene, const dvec3& origin) {
-    content_ = scene.contentBounds();
-    if (!content_.empty()) {
-        content_.minimum -= origin;
-        content_.maximum -= origin;
-    }
-    content_ = roughly(content_);
-}
-
 Result<void> TracedScene::update(const plugin::FrameInputs& inputs,
                                  const TracedSceneOptions& options) {
     const Scene& scene = *inputs.whole;
     const SceneVersions& now = scene.versions;
     const dvec3 origin(inputs.origin[0], inputs.origin[1], inputs.origin[2]);
+    const Bounds content = roughly(boundsOf(inputs.scene.contentMinimum, inputs.scene.contentMaximum)),
+                 surroundings = roughly(boundsOf(inputs.scene.boundsMinimum, inputs.scene.boundsMaximum));
     const uint64_t key =
-        cacheKey(options.proxyMedia, now.structure, now.transforms, now.meshes, now.materials,
+        cacheKey(options.proxyMedia, content, surroundings, now.structure, now.transforms, now.meshes, now.materials,
                  now.textures, now.lights, now.media, now.environment, origin);
     if (whole_ == &scene && key == key_) return {};
 
@@ -160,10 +162,10 @@ Result<void> TracedScene::update(const plugin::FrameInputs& inputs,
     updateMedia(scene, origin, options.proxyMedia);
     scene_.lights =
         std::make_unique<tracing::Lights>(scene, origin, *scene_.surfaces, *scene_.media);
-    updateContent(scene, origin);
-    emission_ = std::make_unique<tracing::LightEmission>(scene_, content_);
+    content_ = content;
+    emission_ = std::make_unique<tracing::LightEmission>(scene_, content, surroundings);
     key_ = key;
-    walksKey_ = usesProxies_ ? cacheKey(proxyHash_, keys.surfaces, keys.lights, content_) : key;
+    walksKey_ = usesProxies_ ? cacheKey(proxyHash_, keys.surfaces, keys.lights, content, surroundings) : key;
     whole_ = &scene;
     surfacesKey_ = keys.surfaces;
     shapesKey_ = keys.shapes;
