@@ -90,11 +90,19 @@ float analyticStep(uint m, LocalRay ray, float t0, float t1, float t) {
     bool height = media[m].kind == kMediumHeight;
     float scaleHeight = media[m].extinction.w;
     float total = sigma * (height ? heightIntegral(ray, scaleHeight, t0, t1) : t1 - t0);
+    // Steps share what is not opaque, however far the medium goes on.
+    float opaque = -log(max(mediaHeader.minTransmittance, 1e-30));
+    float last = t1;
+    if (total > opaque) {
+        t1 = t0 + (height ? heightDistance(ray, scaleHeight, t0, opaque / sigma) : opaque / sigma);
+        total = opaque;
+        if (t >= t1) return last;
+    }
     bool dense = total > 0.5;
     float lengths = dense ? max(ceil(0.5 * steps), 1.0) : steps;
     // A thousandth of a step more, so that a border that was reached is not found again.
     float i = floor((t - t0) / (t1 - t0) * lengths + 1e-3) + 1.0;
-    float next = i < lengths ? t0 + (t1 - t0) * (i / lengths) : t1;
+    float next = i < lengths ? t0 + (t1 - t0) * (i / lengths) : last;
     if (dense) {
         float gone = sigma * (height ? heightIntegral(ray, scaleHeight, t0, t) : t - t0);
         float whole = oneMinusExp(total);
