@@ -35,12 +35,6 @@ Bounds intersection(const Bounds& a, const Bounds& b) {
     return {glm::max(a.minimum, b.minimum), glm::min(a.maximum, b.maximum)};
 }
 
-/// A thing of the scene: a lamp has no size.
-struct Thing {
-    Bounds box;
-    bool lamp = false;
-};
-
 /// How far light goes in a homogeneous medium, of the channel in which it goes farthest.
 WideMedium reachInside(const Medium& medium) {
     WideMedium wide;
@@ -66,31 +60,39 @@ bool isWide(const Medium& medium, const Bounds& box, WideMedium& wide) {
     return longest(box) > kManyTimes * 2 * std::min(wide.visible, wide.spread);
 }
 
-/// Takes out of `things` what belongs with the largest of them.
-SceneCluster takeCluster(std::vector<Thing>& things) {
-    const auto size = [](const Thing& thing) { return longest(thing.box); };
-    const auto seed = std::max_element(things.begin(), things.end(), [&](auto& a, auto& b) {
-        return size(a) < size(b);
-    });
-    Bounds around = seed->box;
-    std::vector<Bounds> boxes;
+/// Takes out of `boxes` what belongs with the largest of them.
+SceneCluster takeCluster(std::vector<Bounds>& boxes) {
     SceneCluster cluster;
+    cluster.things = *std::max_element(boxes.begin(), boxes.end(), [](auto& a, auto& b) {
+        return longest(a) < longest(b);
+    });
+    std::vector<Bounds> taken;
     for (bool grown = true; grown;) {
-        grown = false;
-        const auto first = std::partition(things.begin(), things.end(), [&](const Thing& thing) {
-            return gap(thing.box, around) > kWidestGap * longest(around);
+        // What is far smaller has to be nearer: a house at the foot of a mountain stands for itself.
+        const double size = longest(cluster.things);
+        const auto first = std::partition(boxes.begin(), boxes.end(), [&](const Bounds& box) {
+            return gap(box, cluster.things) > kWidestGap * std::sqrt(size * longest(box));
         });
-        for (auto thing = first; thing != things.end(); ++thing) {
-            around.include(thing->box);
-            if (!thing->lamp) boxes.push_back(thing->box);
-            grown = true;
-        }
-        things.erase(first, things.end());
+        grown = first != boxes.end();
+        for (auto box = first; box != boxes.end(); ++box) cluster.things.include(*box);
+        taken.insert(taken.end(), first, boxes.end());
+        boxes.erase(first, boxes.end());
     }
-    for (const Bounds& box : boxes) cluster.things.include(box);
-    cluster.content = contentOf(std::move(boxes));
-    cluster.withLamps = around;
+    cluster.content = contentOf(std::move(taken));
+    cluster.withLamps = cluster.things;
     return cluster;
+}
+
+/// To the cluster that it is nearest to, if it is near; else it stands for itself.
+void addLamp(std::vector<SceneCluster>& clusters, const dvec3& place) {
+    const Bounds lamp{place, place};
+    SceneCluster* nearest = nullptr;
+    for (SceneCluster& cluster : clusters)
+        if (!nearest || gap(lamp, cluster.things) < gap(lamp, nearest->things)) nearest = &cluster;
+    if (nearest && gap(lamp, nearest->things) <= kWidestGap * longest(nearest->things))
+        nearest->withLamps.include(place);
+    else if (clusters.size() < kMostClusters)
+        clusters.push_back({{}, {}, lamp});
 }
 
 bool isSeen(const Bounds& box, const Viewer& viewer) {
@@ -129,34 +131,29 @@ bool SceneReach::operator==(const SceneReach& other) const {
 
 SceneClusters findClusters(const Scene& scene) {
     SceneClusters found;
-    std::vector<Thing> things;
-    const std::vector<dmat4> world = scene.worldTransforms();
-    const std::vector<bool> visible = scene.worldVisibility();
+    std::vector<Bounds> boxes;
     scene.forEachBox([&](int node, bool isMedium, const Bounds& box) {
         WideMedium wide;
         if (isMedium && isWide(scene.media[size_t(scene.nodes[size_t(node)].medium)], box, wide))
             found.wide.push_back(wide);
         else
-            things.push_back({box, false});
+            boxes.push_back(box);
     });
+    while (!boxes.empty() && found.clusters.size() + 1 < kMostClusters)
+        found.clusters.push_back(takeCluster(boxes));
+    if (!boxes.empty()) {
+        SceneCluster rest;
+        for (const Bounds& box : boxes) rest.things.include(box);
+        rest.content = rest.withLamps = rest.things;
+        found.clusters.push_back(rest);
+    }
+    const std::vector<dmat4> world = scene.worldTransforms();
+    const std::vector<bool> visible = scene.worldVisibility();
     for (size_t i = 0; i < scene.nodes.size(); ++i) {
         const int light = scene.nodes[i].light;
-        if (!visible[i] || light == kNone ||
-            scene.lights[size_t(light)].type == LightType::Directional)
-            continue;
-        const dvec3 place(world[i][3]);
-        things.push_back({{place, place}, true});
-    }
-    while (!things.empty() && found.clusters.size() + 1 < kMostClusters)
-        found.clusters.push_back(takeCluster(things));
-    if (!things.empty()) {
-        SceneCluster rest;
-        for (const Thing& thing : things) {
-            rest.withLamps.include(thing.box);
-            if (!thing.lamp) rest.things.include(thing.box);
-        }
-        rest.content = rest.things;
-        found.clusters.push_back(rest);
+        if (visible[i] && light != kNone &&
+            scene.lights[size_t(light)].type != LightType::Directional)
+            addLamp(found.clusters, dvec3(world[i][3]));
     }
     return found;
 }

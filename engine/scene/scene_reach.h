@@ -8,7 +8,7 @@
 
 namespace tyndall {
 
-/// Things that stand near each other: none has a gap of more than a few times the cluster's size around it. World space, metres.
+/// Things that stand near each other: the gap to all the rest is more than a few times their size. World space, metres.
 struct SceneCluster {
     Bounds things;    // surfaces and media with an end
     Bounds content;   // of those, without the landscape (Scene::contentBounds)

@@ -61,6 +61,45 @@ TEST_P(Airlight, IsTheSameInMillimetresAndInKilometres) {
     }
 }
 
+/// A lamp in a box of fog: nits that fog of this size scatters once towards an eye 6 m from the lamp, along a ray that passes the lamp at `height`.
+double scatteredPast(double height, double size) {
+    const double scattering = 0.15, extinction = 0.4, candela = 50, eye = 6;
+    const double along = std::sqrt(eye * eye - height * height); // to where the lamp is abreast
+    const double end = along + std::min(0.5 * size, 100.0);
+    double sum = 0;
+    const int steps = 1 << 20;
+    for (int i = 0; i < steps; ++i) {
+        const double t = (i + 0.5) / steps * end, x = t - along, d = std::hypot(height, x);
+        sum += std::exp(-extinction * (t + d)) / (d * d);
+    }
+    return sum * end / steps * candela * scattering / (4 * kPi);
+}
+
+TEST(Airlight, HowFarAbsorbingFogGoesOnDoesNotMatter) {
+    for (const double height : {0.5, 1.0, 2.0}) {
+        const double expected = scatteredPast(height, 16), angle = std::asin(height / 6);
+        std::printf("%.1f m from the lamp: %.5f nits\n", height, expected);
+        for (const double size : {16.0, 1e2, 1e3, 1e4, 1e5}) {
+            const Scene scene = sceneFromJson(fmt::format(
+                R"({{"tyndall": 1, "nodes": [
+                {{"name": "fog", "medium": {{"type": "homogeneous", "shape": "box", "size": [{0}, {0}, {0}], "scattering": [0.15, 0.15, 0.15],
+                    "absorption": [0.25, 0.25, 0.25]}}}},
+                {{"name": "lamp", "light": {{"type": "point", "intensity": 50}}}},
+                {{"name": "eye", "camera": {{"type": "perspective", "yfov": 0.001}}, "translation": [0, 0, 6], "rotation": [{1}, 0, 0, {2}]}}],
+                "camera": "eye"}})",
+                size, std::sin(angle / 2), std::cos(angle / 2)));
+            RenderOptions options;
+            options.width = options.height = 8;
+            options.frames = 16;
+            const Rendered picture = sharedRenderer().render(scene, options);
+            double mean = 0;
+            for (int y = 0; y < 8; ++y)
+                for (int x = 0; x < 8; ++x) mean += double(picture.pixel(x, y, "LVE").y) / 64;
+            EXPECT_NEAR(mean / expected, 1, 0.003) << size << " m of fog";
+        }
+    }
+}
+
 INSTANTIATE_TEST_SUITE_P(SunEtAl, Airlight, ::testing::ValuesIn(kRows));
 
 } // namespace

@@ -83,6 +83,31 @@ TEST(Invariance, FarFromTheOriginTheSamePicture) {
               1e-3);
 }
 
+/// The test scene, and far behind the eye a thing too small to be seen from here: a black box, fog, or a lamp that is out.
+Scene withSpeck(const std::string& media, const std::string& thing, double distance) {
+    return testScene(1, media + fmt::format(R"(,{{"name": "speck", "translation": [0, 1, {}], {}}})",
+                                            distance, thing));
+}
+
+TEST(Invariance, WhatIsFarAwayAndUnseenChangesNothing) {
+    const std::string fog =
+        R"(,{"name": "fog", "medium": {"type": "homogeneous", "shape": "box", "size": [4, 1.5, 4], "scattering": [0.6, 0.6, 0.8], "absorption": [0.05, 0.05, 0.05]}, "translation": [0, 0.75, 0]})";
+    for (const int frames : {1, 4}) {
+        const Image alone = sharedRenderer().render(testScene(1, fog), options(frames)).beauty;
+        for (const std::string thing :
+             {R"("primitive": {"shape": "box", "size": [0.1, 0.1, 0.1]}, "material": {"baseColor": [0, 0, 0], "specular": 0})",
+              R"("medium": {"type": "homogeneous", "shape": "box", "size": [0.1, 0.1, 0.1], "scattering": [1, 1, 1]})",
+              R"("light": {"type": "point", "intensity": 0})"})
+            for (const double distance : {1e2, 1e4, 1e7})
+                EXPECT_LE(relmse(sharedRenderer()
+                                     .render(withSpeck(fog, thing, distance), options(frames))
+                                     .beauty,
+                                 alone),
+                          1e-8)
+                    << thing << ", " << distance << " m";
+    }
+}
+
 /// The box medium of `shape` as a constant grid of n voxels an edge. Voxel centres: the cube's faces lie half a voxel outside them.
 Scene asGrid(const Scene& shape, int n) {
     Scene grid = shape;

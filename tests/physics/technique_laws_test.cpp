@@ -152,6 +152,41 @@ TEST_P(TechniqueLaws, TheSameFrameHasTheSameBitsWhateverWasBefore) {
     }
 }
 
+/// A black box too small and too far away to light or shade anything.
+std::string speck(double distance) {
+    return fmt::format(
+        R"({{"name": "speck", "primitive": {{"shape": "box", "size": [0.1, 0.1, 0.1]}}, "material": {{"baseColor": [0, 0, 0], "specular": 0}},
+        "translation": [0, 1, {}]}},)",
+        distance);
+}
+
+TEST_P(TechniqueLaws, WhatIsFarAwayAndUnseenChangesNothing) {
+    const std::string sun =
+        R"({"name": "sun", "light": {"type": "directional", "intensity": 9}, "rotation": [-0.6, 0.2, 0.1, 0.7]},)";
+    for (const std::string& light : {std::string(), sun}) {
+        const Image alone = render(corner(50, kFog + light)).beauty;
+        EXPECT_GT(meanOf(alone), 0);
+        for (const double distance : {1e2, 1e4, 1e7}) {
+            const Image with = render(corner(50, kFog + light + speck(distance))).beauty;
+            // Seeds are the same, so that even techniques that choose by chance choose alike.
+            EXPECT_LE(compareImages(with, alone).value().relmse, 1e-8) << distance << " m";
+        }
+    }
+}
+
+TEST_P(TechniqueLaws, FarFromTheOriginThePictureIsTheSame) {
+    const Scene near = sceneFromJson(corner(50, kFog));
+    const Image expected = render(near).beauty;
+    for (const double distance : {1e3, 1e5, 1e7}) {
+        Scene far = near;
+        for (Node& node : far.nodes)
+            if (node.parent == kNone) node.translation += dvec3(distance, 0, -distance);
+        far.versions.transforms = nextVersion();
+        // Positions are in single precision from a point of whole metres near the eye: they differ by rounding alone, 1e-7 of a few metres.
+        EXPECT_LE(compareImages(render(far).beauty, expected).value().relmse, 1e-6) << distance;
+    }
+}
+
 TEST_P(TechniqueLaws, AClosedRoomStaysDark) {
     // Walls far thinner than a cell of a lattice or a texel of a map, and as thick as half a cell; turned, they lie askew to everything. A wall that
     // leaks brings some tenths of the light outside; half a percent is what cells and texels on both sides of one may let by.
