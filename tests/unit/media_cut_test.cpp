@@ -75,7 +75,9 @@ void expectEveryCutRefused(const fs::path& path, const std::string& density, siz
         std::ofstream(cut, std::ios::binary | std::ios::trunc) << whole.substr(0, length);
         const Result<GridFile> file = importGrid(cut, only(density));
         ASSERT_FALSE(file.ok());
-        if (length + 1 == whole.size()) ASSERT_FALSE(gridInfo(cut).ok());
+        if (length + 1 == whole.size()) {
+            ASSERT_FALSE(gridInfo(cut).ok());
+        }
         EXPECT_THAT(file.message(), HasSubstr(cut.filename().string()));
         EXPECT_THAT(file.message(), Not(HasSubstr("\n")));
         // Shorter ones may not even begin like a volume.
@@ -108,6 +110,15 @@ TEST(CutVolumes, OfSeveralGridsEachMayBeTheOneThatIsCut) {
                            {VdbLayout::Codec::Default, offsets});
         ASSERT_NO_FATAL_FAILURE(expectEveryCutRefused(path, "density", 14));
         ASSERT_NO_FATAL_FAILURE(expectEveryCutRefused(path, "temperature", 10));
+    }
+}
+
+TEST(CutVolumes, EveryCutOfANanoVdbFileIsRefusedWithThePlaceWhereItEnds) {
+    const fs::path path = folder() / "a.nvdb";
+    for (const test::NanoCodec codec :
+         {test::NanoCodec::None, test::NanoCodec::Zip, test::NanoCodec::Blosc}) {
+        test::writeNanoVdb(path, cloud("density"), test::NanoType::Float, codec);
+        ASSERT_NO_FATAL_FAILURE(expectEveryCutRefused(path, "density", 12));
     }
 }
 
