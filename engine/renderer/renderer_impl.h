@@ -63,6 +63,8 @@ struct Renderer::Impl {
     fg::TextureHandle inspected;
 
     void registerSettings();
+    /// Throws gl::NoRoom.
+    Result<FrameResult> renderFrame(const FrameRequest& request);
     // The steps of a frame, in order.
     Result<CameraPose> choosePose(const FrameRequest& request) const;
     Result<void> updateScene(const FrameRequest& request, const CameraPose& pose);
