@@ -52,7 +52,7 @@ Outcome App::openScene(Scene& scene) {
     JobControl job([&shown](const JobProgress& progress) {
         shown.update(progress.fraction, progress.sentence);
     });
-    return loadScene(options_.render.scene, job, scene);
+    return loadScene(options_.render, job, scene);
 }
 
 Outcome App::openWindow() {

@@ -143,6 +143,9 @@ std::string Session::changedSettings() const {
 
 std::string Session::captureLine() const {
     std::string line = "tyndall capture " + shellWord(sceneFile_);
+    // A scene that was saved has the grid in its file.
+    if (!options_.render.grid.empty() && sceneFile_ == options_.render.scene)
+        line += " --grid " + shellWord(options_.render.grid);
     line += fmt::format(" --size {}x{}", request.width, request.height);
     if (request.cameraNode != kNone)
         line += " --camera " + shellWord(scene_.nodes[size_t(request.cameraNode)].name);

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "app/program.h"
+#include "core/image_metrics.h"
 #include "core/log.h"
 
 namespace tyndall {
@@ -11,6 +12,10 @@ Outcome CaptureRun::run(JobControl& job) {
     if (Outcome opened = RenderSession::open(options_.render, job, &profiler_, session_);
         !opened.ok())
         return opened;
+    if (options_.timeStep != CaptureOptions{}.timeStep)
+        log::info(fmt::format(
+            "note: --time-step {}: nothing in a scene is played yet, so it has no effect",
+            options_.timeStep));
     RecordedFrames frames;
     frames.converge = options_.converge;
     frames.separateTerms = options_.hasAov("terms");
@@ -62,6 +67,7 @@ Outcome CaptureRun::writeFrame(int index) {
     const CpuZone zone(&profiler_, "output.write");
     const std::string path = options_.outputOfFrame(index);
     Image beauty = recorder_->beauty();
+    warnOfInvalid(beauty);
     Outcome written;
     if (options_.wantsExr())
         written = writeExrFrame(path, std::move(beauty));
@@ -71,6 +77,23 @@ Outcome CaptureRun::writeFrame(int index) {
             ExitStatus::Failed);
     if (written.ok()) log::info("wrote " + path);
     return written;
+}
+
+/// A picture that is not finite says so once, with who made it so.
+void CaptureRun::warnOfInvalid(const Image& beauty) {
+    const uint64_t values = countValues(beauty).nonFinite;
+    if (values == 0) return;
+    std::string who;
+    for (const InvalidTerms& invalid : session_->renderer().readInvalidTerms())
+        who += fmt::format(
+            "{} {} of {} from frame {} on", who.empty() ? ":" : ",", termNames(invalid.terms),
+            invalid.owner == kDirectPasses
+                ? "the direct passes"
+                : "'" + session_->renderer().techniques()[size_t(invalid.owner)].name + "'",
+            invalid.firstFrame);
+    if (who.empty()) who = ", though all terms are: an effect on the finished picture made them so";
+    log::warningOnce("capture.nonfinite",
+                     fmt::format("{} values of the picture are not finite{}", values, who));
 }
 
 Outcome CaptureRun::writeExrFrame(const std::string& path, Image beauty) {

@@ -23,6 +23,7 @@ private:
     Outcome renderFrames(JobControl& job);
     Outcome renderFrame();
     Outcome writeFrame(int index);
+    void warnOfInvalid(const Image& beauty);
     Outcome writeExrFrame(const std::string& path, Image beauty);
     [[nodiscard]] double displayedEv100() const;
     [[nodiscard]] ImageMetadata metadata() const;

@@ -7,13 +7,20 @@
 
 namespace tyndall {
 
-Outcome loadScene(const std::string& path, JobControl& job, Scene& scene) {
+Outcome loadScene(const ViewOptions& options, JobControl& job, Scene& scene) {
+    const std::string& path = options.scene;
+    if (!options.grid.empty() && !isBareVolume(path))
+        return wrongInput(fmt::format(
+            "--grid {}: it chooses a grid of a bare .vdb or .nvdb, which '{}' is not; in a scene file the key \"grid\" of a medium does",
+            options.grid, path));
     Result<LoadedScene> loaded = [&] {
         JobPhase phase(job, "loading " + path);
-        const LoadOptions load{[&](float fraction, const std::string& what) {
+        LoadOptions load;
+        load.grid = options.grid;
+        load.progress = [&](float fraction, const std::string& what) {
             phase.update(double(fraction), what);
             return !job.cancelled();
-        }};
+        };
         return tyndall::loadScene(path, load);
     }();
     if (job.cancelled())
@@ -21,6 +28,10 @@ Outcome loadScene(const std::string& path, JobControl& job, Scene& scene) {
     if (!loaded.ok()) return wrongInput(loaded.message());
     for (const std::string& what : loaded->supplied) log::info("supplied: " + what);
     for (const std::string& note : loaded->notes) log::info("note: " + note);
+    if (options.time != 0)
+        log::info(
+            fmt::format("note: --time {}: nothing in a scene is played yet, so it has no effect",
+                        options.time));
     scene = std::move(loaded->scene);
     return {};
 }

@@ -9,6 +9,11 @@ void addViewOptions(CLI::App& command, ViewOptions& options, const OptionDefault
     if (defaults.scene) sceneHelp += std::string(" (") + defaults.scene + ")";
     command.add_option("SCENE", options.scene, sceneHelp)->required(defaults.scene == nullptr);
     command
+        .add_option(
+            "--grid", options.grid,
+            "Of a bare .vdb or .nvdb: the grid that is density, by name (by its usual names)")
+        ->type_name("NAME");
+    command
         .add_option("--size", options.size,
                     std::string("Width and height of the picture in pixels (") + defaults.size +
                         ")")

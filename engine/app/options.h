@@ -20,7 +20,7 @@ namespace tyndall {
 
 /// What is looked at, from where, when: the same for the renderer and for the reference. As on the command line.
 struct ViewOptions {
-    std::string scene, size = "1280x720", camera, terms;
+    std::string scene, grid, size = "1280x720", camera, terms;
     double time = 0; // seconds of the scene's clock
     uint64_t seed = 0;
 };
@@ -59,7 +59,7 @@ struct OptionDefaults {
     const char* size = "1280x720";
 };
 
-/// SCENE, --size, --camera, --time, --terms, --seed.
+/// SCENE, --grid, --size, --camera, --time, --terms, --seed.
 void addViewOptions(CLI::App& command, ViewOptions& options, const OptionDefaults& defaults = {});
 /// Those, and --pose, --gi, --quality, --set, --plugin.
 void addRenderOptions(CLI::App& command, RenderOptions& options,

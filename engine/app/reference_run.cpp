@@ -1,6 +1,7 @@
 #include "app/reference_run.h"
 
 #include <chrono>
+#include <unistd.h>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -55,7 +56,7 @@ Outcome ReferenceRun::run(JobControl& job) {
 Outcome ReferenceRun::loadAndCheck(JobControl& job) {
     if (Result<void> checked = understandReference(options_, settings_); !checked.ok())
         return wrongInput(checked.message());
-    if (Outcome loaded = loadScene(options_.scene, job, scene_); !loaded.ok()) return loaded;
+    if (Outcome loaded = loadScene(options_, job, scene_); !loaded.ok()) return loaded;
     const Result<int> camera = findCamera(scene_, options_.camera);
     if (!camera.ok()) return wrongInput(camera.message());
     camera_ = *camera;
@@ -121,9 +122,20 @@ Outcome ReferenceRun::startOrResume() {
     return {};
 }
 
+/// Beside the picture. Where its name is so long that nothing fits behind it, a part of it and a hash of the whole.
+fs::path ReferenceRun::resumePath() const {
+    constexpr size_t kLongest = 255 - sizeof ".resume" + 1;
+    const fs::path picture(output_);
+    const std::string name = picture.filename().string();
+    if (name.size() <= kLongest) return output_ + ".resume";
+    return picture.parent_path() / fmt::format("{}-{:016x}.resume", name.substr(0, kLongest - 17),
+                                               std::hash<std::string>()(name));
+}
+
 /// Better now than after an hour: can files be written there?
 Outcome ReferenceRun::probeOutput() const {
-    const fs::path probe = output_ + ".probe";
+    const fs::path probe =
+        fs::path(output_).parent_path() / fmt::format(".tyndall-{}.probe", ::getpid());
     if (Result<void> written = writeFileAtomically(probe, ""); !written.ok())
         return failed(fmt::format("-o {}: {}", output_, written.message()));
     std::error_code error;

@@ -49,7 +49,7 @@ private:
     void sayWhatBecame() const;
     [[nodiscard]] std::string identity() const;
     Outcome copyOut() const;
-    [[nodiscard]] std::filesystem::path resumePath() const { return output_ + ".resume"; }
+    [[nodiscard]] std::filesystem::path resumePath() const;
 
     ReferenceOptions options_;
     reference::RenderSettings settings_;

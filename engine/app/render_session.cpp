@@ -88,8 +88,7 @@ Outcome RenderSession::open(const RenderOptions& options, JobControl& job, CpuPr
     opened->plan_ = std::move(*plan);
     {
         const CpuZone zone(profiler, "scene.load");
-        if (Outcome loaded = loadScene(options.scene, job, opened->scene_); !loaded.ok())
-            return loaded;
+        if (Outcome loaded = loadScene(options, job, opened->scene_); !loaded.ok()) return loaded;
     }
     if (Outcome done = opened->makeRequest(); !done.ok()) return done;
     JobPhase phase(job, "starting the renderer");

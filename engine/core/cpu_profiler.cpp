@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <chrono>
+#include <fstream>
+#include <limits>
+#include <string>
 #include <sys/resource.h>
 #include <thread>
 
@@ -20,6 +23,22 @@ uint64_t peakResidentBytes() {
     rusage usage{};
     getrusage(RUSAGE_SELF, &usage);
     return uint64_t(usage.ru_maxrss) * 1024; // Linux counts in KiB
+}
+
+uint64_t availableMemoryBytes() {
+    uint64_t available = std::numeric_limits<uint64_t>::max();
+    std::ifstream machine("/proc/meminfo");
+    for (std::string key, rest; machine >> key && std::getline(machine, rest);)
+        if (key == "MemAvailable:") available = std::stoull(rest) * 1024;
+    const auto number = [](const char* file) {
+        uint64_t value = 0;
+        std::ifstream(file) >> value; // "max" is no number: no limit
+        return value;
+    };
+    const uint64_t limit = number("/sys/fs/cgroup/memory.max"),
+                   used = number("/sys/fs/cgroup/memory.current");
+    if (limit > 0) available = std::min(available, limit > used ? limit - used : 0);
+    return available;
 }
 
 void CpuProfiler::record(std::string_view name, double startMicroseconds,

@@ -13,6 +13,9 @@ namespace tyndall {
 double processMicroseconds();
 /// The largest resident memory so far, bytes.
 uint64_t peakResidentBytes();
+/// Memory that this process can still take before the system ends it: what the machine has free, and what its control group
+/// allows. The largest number where neither can be told.
+uint64_t availableMemoryBytes();
 
 struct CpuSpan {
     std::string name;

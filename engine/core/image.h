@@ -54,7 +54,8 @@ struct ExrFile {
     std::vector<ImageLayer> layers; // main layer first, if there is one
     ImageMetadata metadata;
 };
-/// Reads every layer as float. Errors: missing or damaged file, absurd size (over 2^28 pixels).
+/// Reads every layer as float. The picture is the file's display window: 0 where the data window does not reach, and without
+/// what lies outside (OpenEXR, Technical Introduction). Errors: missing or damaged file, absurd size (a window over 2^28 pixels).
 Result<ExrFile> readExr(const std::filesystem::path& path);
 
 /// 8-bit PNG from display-referred RGB or RGBA bytes, top row first. Atomic as writeExr.

@@ -5,6 +5,7 @@
 #include "core/image.h"
 
 #include <algorithm>
+#include <cstdint>
 #include <cstring>
 
 #include <ImfChannelList.h>
@@ -154,21 +155,81 @@ std::vector<Plan> planLayers(const Imf::ChannelList& channels) {
     return plans; // "" sorts first: the main layer leads
 }
 
+/// Pixels of a window, both ends inclusive. In 64 bits: the corners are any 32-bit numbers.
+struct Extent {
+    int64_t width, height;
+    explicit Extent(const Imath::Box2i& window)
+        : width(int64_t(window.max.x) - window.min.x + 1),
+          height(int64_t(window.max.y) - window.min.y + 1) {}
+    [[nodiscard]] bool sensible() const {
+        return width > 0 && height > 0 && uint64_t(width) <= kMaxPixels / uint64_t(height);
+    }
+    [[nodiscard]] uint64_t pixels() const { return uint64_t(width) * uint64_t(height); }
+};
+
 Result<void> checkSize(const std::filesystem::path& path, const Imf::Header& header,
                        size_t fileBytes, size_t channelCount) {
-    const Imath::Box2i window = header.dataWindow();
-    const int64_t width = int64_t(window.max.x) - window.min.x + 1,
-                  height = int64_t(window.max.y) - window.min.y + 1;
-    if (width <= 0 || height <= 0 || uint64_t(width) > kMaxPixels / uint64_t(height))
-        return Error{
-            fmt::format("'{}' is {}x{} pixels: an image has at least one and at most {} pixels",
-                        path.string(), width, height, kMaxPixels)};
-    const uint64_t samples = uint64_t(width) * uint64_t(height) * channelCount;
-    if (samples > kMaxPixels * 16 || samples / kMaxCompression > fileBytes)
+    const Extent data(header.dataWindow()), display(header.displayWindow());
+    for (const Extent& extent : {data, display})
+        if (!extent.sensible())
+            return Error{
+                fmt::format("'{}' is {}x{} pixels: an image has at least one and at most {} pixels",
+                            path.string(), extent.width, extent.height, kMaxPixels)};
+    const uint64_t stored = data.pixels() * channelCount, shown = display.pixels() * channelCount;
+    if (stored > kMaxPixels * 16 || stored / kMaxCompression > fileBytes)
         return Error{fmt::format(
             "'{}' promises {}x{} pixels in {} channels, which its {} bytes cannot hold: it is damaged",
-            path.string(), width, height, channelCount, fileBytes)};
+            path.string(), data.width, data.height, channelCount, fileBytes)};
+    // Black pixels around a crop cost the file nothing, and this process four bytes each.
+    if (shown > kMaxPixels && shown > stored)
+        return Error{fmt::format(
+            "'{}' has a display window of {}x{} pixels in {} channels around {}x{} that it stores: "
+            "at most {} values are made black; crop its display window",
+            path.string(), display.width, display.height, channelCount, data.width, data.height,
+            kMaxPixels)};
     return {};
+}
+
+/// One row of a layer as the file has it: as wide as the data window.
+struct StoredRow {
+    std::vector<float> values;
+    Image* picture;
+};
+
+/// Fills the pictures, which are black and as large as the display window, with what the file has for them. Row by row:
+/// what lies outside the display window then takes no more memory than a row of it.
+void readInto(Imf::InputFile& file, std::span<const Plan> plans, std::span<ImageLayer> layers) {
+    const Imath::Box2i data = file.header().dataWindow(), display = file.header().displayWindow();
+    const int left = std::max(data.min.x, display.min.x),
+              right = std::min(data.max.x, display.max.x),
+              top = std::max(data.min.y, display.min.y),
+              bottom = std::min(data.max.y, display.max.y);
+    if (left > right || top > bottom) return;
+
+    std::vector<StoredRow> rows;
+    Imf::FrameBuffer frame;
+    for (size_t i = 0; i < plans.size(); ++i) {
+        const size_t channels = plans[i].channels.size(), pixelBytes = sizeof(float) * channels;
+        StoredRow& row = rows.emplace_back(
+            StoredRow{std::vector<float>(size_t(Extent(data).width) * channels), &layers[i].image});
+        for (size_t c = 0; c < channels; ++c) {
+            // Where the pixel of x = 0 would be; every row has the same place.
+            const auto first = reinterpret_cast<intptr_t>(row.values.data() + c);
+            char* origin =
+                reinterpret_cast<char*>(first - intptr_t(data.min.x) * intptr_t(pixelBytes));
+            frame.insert(plans[i].channels[c], Imf::Slice(Imf::FLOAT, origin, pixelBytes, 0));
+        }
+    }
+    file.setFrameBuffer(frame);
+    for (int y = top; y <= bottom; ++y) {
+        file.readPixels(y);
+        for (const StoredRow& row : rows) {
+            const auto channels = size_t(row.picture->channels);
+            std::copy_n(row.values.data() + size_t(left - data.min.x) * channels,
+                        size_t(right - left + 1) * channels,
+                        row.picture->at(left - display.min.x, y - display.min.y));
+        }
+    }
 }
 
 Result<ExrFile> decode(const std::filesystem::path& path, std::string_view content) {
@@ -188,25 +249,12 @@ Result<ExrFile> decode(const std::filesystem::path& path, std::string_view conte
         return size.error();
 
     ExrFile result;
-    const Imath::Box2i window = header.dataWindow();
-    const int width = window.max.x - window.min.x + 1, height = window.max.y - window.min.y + 1;
+    const Extent picture(header.displayWindow());
     const std::vector<Plan> plans = planLayers(header.channels());
-    result.layers.reserve(plans.size()); // the frame buffer points into the images
-    Imf::FrameBuffer frame;
-    for (const Plan& plan : plans) {
-        Image& image = result.layers
-                           .emplace_back(ImageLayer{
-                               plan.layer, Image(width, height, int(plan.channels.size()))})
-                           .image;
-        for (size_t c = 0; c < plan.channels.size(); ++c) {
-            const size_t pixelBytes = sizeof(float) * plan.channels.size();
-            frame.insert(plan.channels[c],
-                         Imf::Slice::Make(Imf::FLOAT, image.pixels.data() + c, window, pixelBytes,
-                                          pixelBytes * size_t(width)));
-        }
-    }
-    file.setFrameBuffer(frame);
-    file.readPixels(window.min.y, window.max.y);
+    for (const Plan& plan : plans)
+        result.layers.push_back({plan.layer, Image(int(picture.width), int(picture.height),
+                                                   int(plan.channels.size()))});
+    readInto(file, plans, result.layers);
     for (auto it = header.begin(); it != header.end(); ++it)
         if (const auto* text = dynamic_cast<const Imf::StringAttribute*>(&it.attribute()))
             result.metadata[it.name()] = text->value();

@@ -61,11 +61,12 @@ Result<void> writeThrough(const fs::path& path, int flags, std::string_view cont
     return {};
 }
 
-/// Unique in the folder: two programs, or two threads of one, may write the same output at once.
+/// Unique in the folder: two programs, or two threads of one, may write the same output at once. Short, since the target's name
+/// may be as long as a name can be.
 fs::path temporaryNameBeside(const fs::path& target) {
     static std::atomic<unsigned> counter{0};
-    return target.parent_path() / fmt::format(".{}.{}-{}.tmp", target.filename().string(),
-                                              ::getpid(), counter.fetch_add(1));
+    return target.parent_path() /
+           fmt::format(".tyndall-{}-{}.tmp", ::getpid(), counter.fetch_add(1));
 }
 
 } // namespace
@@ -92,7 +93,9 @@ Result<void> writeFileAtomically(const fs::path& path, std::string_view content)
     if (fs::exists(status) && ::access(target.c_str(), W_OK) != 0)
         return systemError("cannot write", path, errno);
 
-    const fs::path temporary = temporaryNameBeside(target);
+    fs::path temporary = temporaryNameBeside(target);
+    while (fs::exists(fs::symlink_status(temporary, error))) // left by a process that was killed
+        temporary = temporaryNameBeside(target);
     Result<void> written = writeThrough(temporary, O_CREAT | O_EXCL, content);
     if (written.ok() && ::rename(temporary.c_str(), target.c_str()) != 0)
         written = systemError("cannot write", path, errno);

@@ -14,6 +14,11 @@ void forgetErrors() {
     }
 }
 
+Buffer orNoRoom(Result<Buffer> created) {
+    if (!created.ok()) throw NoRoom(created.message());
+    return std::move(*created);
+}
+
 } // namespace
 
 Result<Buffer> Buffer::create(std::string_view name, uint64_t bytes, BufferAccess access,
@@ -40,13 +45,11 @@ Result<Buffer> Buffer::create(std::string_view name, uint64_t bytes, BufferAcces
     return buffer;
 }
 
-Buffer::Buffer(std::string_view name, uint64_t bytes, BufferAccess access) {
-    *this = std::move(create(name, bytes, access).value());
-}
+Buffer::Buffer(std::string_view name, uint64_t bytes, BufferAccess access)
+    : Buffer(orNoRoom(create(name, bytes, access))) {}
 
-Buffer::Buffer(std::string_view name, std::span<const std::byte> data, BufferAccess access) {
-    *this = std::move(create(name, data.size(), access, data.data()).value());
-}
+Buffer::Buffer(std::string_view name, std::span<const std::byte> data, BufferAccess access)
+    : Buffer(orNoRoom(create(name, data.size(), access, data.data()))) {}
 
 void Buffer::write(uint64_t offset, const void* data, uint64_t size) {
     CHECK(access_ == BufferAccess::CpuUpdates, "write() needs a buffer made with CpuUpdates");

@@ -4,12 +4,19 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <stdexcept>
 #include <string>
 #include <string_view>
 
 #include "gl/api.h"
 
 namespace tyndall::gl {
+
+/// Thrown where storage is made in the middle of a frame: the driver has no room for it, or takes no such size. The renderer makes
+/// an Error of it. what() is a sentence.
+struct NoRoom : std::runtime_error {
+    using std::runtime_error::runtime_error;
+};
 
 enum class ObjectKind : uint32_t {
     Buffer = 0,

@@ -118,7 +118,9 @@ Result<Texture> Texture::create(std::string_view name, const TextureSpec& spec) 
 }
 
 Texture::Texture(std::string_view name, const TextureSpec& spec) {
-    *this = std::move(create(name, spec).value());
+    Result<Texture> created = create(name, spec);
+    if (!created.ok()) throw NoRoom(created.message());
+    *this = std::move(*created);
 }
 
 Texture Texture::view(std::string_view name, GLenum target, GLenum internalFormat, int firstMip,

@@ -78,6 +78,19 @@ std::optional<size_t> findOnly(std::span<const GridInfo> grids) {
     return std::nullopt;
 }
 
+/// "'a', 'b' or 'c'": what could be density; "" where nothing could.
+std::string nameCandidates(std::span<const GridInfo> grids) {
+    std::vector<std::string> names;
+    for (const GridInfo& grid : grids)
+        if (whyNot(grid).empty()) names.push_back("'" + grid.name + "'");
+    constexpr size_t kShown = 12;
+    std::string text;
+    for (size_t i = 0; i < std::min(names.size(), kShown); ++i)
+        text += (i == 0 ? "" : i + 1 == names.size() ? " or " : ", ") + names[i];
+    return names.size() > kShown ? fmt::format("{} and {} more", text, names.size() - kShown)
+                                 : text;
+}
+
 Result<size_t> selectDensity(std::span<const GridInfo> grids, const GridRequest& request,
                              const std::string& file, GridSelection& selection) {
     if (!request.density.empty()) return requireNamed(grids, request.density, "density", file);
@@ -99,12 +112,15 @@ Result<size_t> selectDensity(std::span<const GridInfo> grids, const GridRequest&
             file, grids[0].name, whyNot(grids[0]))};
     if (grids.empty())
         return Error{fmt::format("'{}' has no grids; a scalar fog volume is needed", file)};
-    const bool several = std::any_of(grids.begin(), grids.end(),
-                                     [](const GridInfo& grid) { return whyNot(grid).empty(); });
-    return Error{fmt::format("'{}' has {}; {}", file, describeGrids(grids),
-                             several
-                                 ? "say which one is density"
-                                 : "none of them is a scalar fog volume that could be density")};
+    const std::string candidates = nameCandidates(grids);
+    if (candidates.empty())
+        return Error{
+            fmt::format("'{}' has {}; none of them is a scalar fog volume that could be density",
+                        file, describeGrids(grids))};
+    return Error{fmt::format(
+        "'{}' has several grids that could be density, {}; choose with --grid NAME where the file itself is opened, "
+        "or with \"grid\": \"NAME\" in a scene file",
+        file, candidates)};
 }
 
 void noteMissingClass(const GridInfo& grid, const std::string& file, GridSelection& selection) {

@@ -1,11 +1,17 @@
 #include "reference/film.h"
 
 #include <algorithm>
+#include <bit>
 #include <cstring>
 
 #include <fmt/format.h>
 
 namespace tyndall::reference {
+
+uint64_t Film::bytes(int width, int height, TermSet terms) {
+    const uint64_t images = uint64_t(std::popcount(terms)) + kStreams;
+    return uint64_t(width) * uint64_t(height) * images * 3 * sizeof(double);
+}
 
 Film::Film(int width, int height, TermSet terms) : width_(width), height_(height), terms_(terms) {
     for (uint32_t i = 0; i < kTermCount; ++i)

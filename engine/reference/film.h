@@ -14,6 +14,9 @@ public:
     Film() = default;
     Film(int width, int height, TermSet terms);
 
+    /// What one of this size takes.
+    [[nodiscard]] static uint64_t bytes(int width, int height, TermSet terms);
+
     [[nodiscard]] int width() const { return width_; }
     [[nodiscard]] int height() const { return height_; }
     [[nodiscard]] TermSet terms() const { return terms_; }

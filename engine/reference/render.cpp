@@ -6,6 +6,10 @@
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
+#include <fmt/format.h>
+
+#include "core/cpu_profiler.h"
+
 #include "reference/simple_path_tracer.h"
 
 namespace tyndall::reference {
@@ -14,6 +18,16 @@ namespace {
 constexpr int kTile = 16; // pixels
 
 int tilesAcross(int pixels) { return (pixels + kTile - 1) / kTile; }
+
+/// Better now than by a system that ends the process: the sums, and while they are written an image of floats for each layer.
+Result<void> checkRoom(const RenderSettings& settings) {
+    const uint64_t film = Film::bytes(settings.width, settings.height, settings.path.terms),
+                   needed = film + film / 4, free = availableMemoryBytes();
+    if (needed <= free) return {};
+    return Error{fmt::format(
+        "a reference of {}x{} pixels needs {:.1f} GiB of memory, of which {:.1f} GiB are free; a smaller --size needs less",
+        settings.width, settings.height, double(needed) / (1 << 30), double(free) / (1 << 30))};
+}
 
 } // namespace
 
@@ -46,6 +60,7 @@ private:
 
 Result<ReferenceRender> ReferenceRender::start(const Scene& scene, int cameraNode,
                                                const RenderSettings& settings) {
+    if (Result<void> room = checkRoom(settings); !room.ok()) return room.error();
     const CameraRays camera(scene, cameraNode, settings.width, settings.height);
     auto traced = TracerScene::build(scene, camera.origin(), settings.threads);
     if (!traced.ok()) return traced.error();

@@ -14,9 +14,9 @@ bool hasContent(const fg::FrameGraph& graph, fg::TextureHandle handle) {
 
 } // namespace
 
-void TermImages::add(TermSet terms, fg::TextureHandle image) {
+void TermImages::add(TermSet terms, fg::TextureHandle image, int owner) {
     CHECK(count < kMaxTermImages, "more term images than a frame holds");
-    images[count++] = {terms, image};
+    images[count++] = {terms, image, owner};
 }
 
 fg::TextureHandle TermImages::find(Term term) const {
@@ -68,6 +68,14 @@ struct SumData {
     std::array<fg::TextureHandle, kSummedAtOnce> images;
     uint32_t count = 0;
     fg::TextureHandle sum;
+    fg::BufferHandle firstInvalid;
+    bool startsAnew = false;
+    gpu::SumParams params;
+
+    /// What this pass made, after what was there before.
+    [[nodiscard]] Sum result(const Sum& before) const {
+        return {sum, count > 0 ? firstInvalid : before.firstInvalid};
+    }
 };
 
 void executeSum(const SumData& data, fg::PassContext& context) {
@@ -77,36 +85,52 @@ void executeSum(const SumData& data, fg::PassContext& context) {
     }
     static constexpr const char* kNames[kSummedAtOnce] = {"image0", "image1", "image2", "image3",
                                                           "image4", "image5", "image6", "image7"};
+    if (data.startsAnew) {
+        context.clearBuffer(data.firstInvalid, 0);
+        context.barrier(fg::Access::StorageWrite);
+    }
     auto command = context.compute("post/sum.comp", {{"COUNT", int32_t(data.count)}});
     for (uint32_t i = 0; i < data.count; ++i) command.bind(kNames[i], data.images[i]);
-    command.bind("sum", data.sum).dispatchOver(data.sum);
+    command.bind("sum", data.sum)
+        .bind("FirstInvalid", data.firstInvalid)
+        .params(data.params)
+        .dispatchOver(data.sum);
 }
 
 } // namespace
 
-fg::TextureHandle addSumPass(fg::FrameGraph& graph, const TermImages& images, int width,
-                             int height) {
-    fg::TextureHandle sum;
+Sum addSumPass(fg::FrameGraph& graph, const TermImages& images, const SumFrame& frame) {
+    const fg::PersistentBuffer kept = graph.persistentBuffer(
+        "picture.firstInvalid", fg::BufferDesc{kMaxTermImages * sizeof(uint32_t)});
+    Sum result;
     uint32_t next = 0;
     do {
-        sum = graph
-                  .addPass<SumData>(
-                      "sum",
-                      [&](fg::Builder& builder, SumData& data) {
-                          if (sum) data.images[data.count++] = builder.read(sum);
-                          while (next < images.count && data.count < kSummedAtOnce)
-                              data.images[data.count++] = builder.read(images.images[next++].image);
-                          data.sum = builder.create(
-                              "beauty", fg::texture2D(fg::Format::RGBA32F, width, height),
-                              data.count > 0 ? fg::Access::StorageWrite
-                                             : fg::Access::TransferWrite);
-                      },
-                      [](const SumData& data, fg::PassContext& context) {
-                          executeSum(data, context);
-                      })
-                  .sum;
+        result =
+            graph
+                .addPass<SumData>(
+                    "sum",
+                    [&](fg::Builder& builder, SumData& data) {
+                        const bool first = !result.image;
+                        data.params = {next, first ? 0u : 1u, frame.number, 0};
+                        data.startsAnew = first && (frame.number == 1 || kept.wasReset);
+                        if (!first) data.images[data.count++] = builder.read(result.image);
+                        while (next < images.count && data.count < kSummedAtOnce)
+                            data.images[data.count++] = builder.read(images.images[next++].image);
+                        data.sum = builder.create(
+                            "beauty", fg::texture2D(fg::Format::RGBA32F, frame.width, frame.height),
+                            data.count > 0 ? fg::Access::StorageWrite : fg::Access::TransferWrite);
+                        if (data.count == 0) return;
+                        const fg::BufferHandle before =
+                            result.firstInvalid ? result.firstInvalid : kept.handle;
+                        builder.read(before);
+                        data.firstInvalid = builder.write(before);
+                    },
+                    [](const SumData& data, fg::PassContext& context) {
+                        executeSum(data, context);
+                    })
+                .result(result);
     } while (next < images.count);
-    return sum;
+    return result;
 }
 
 fg::TextureHandle addAccumulatePass(fg::FrameGraph& graph, const char* historyName,

@@ -14,9 +14,20 @@ fg::TextureHandle addCompositePass(fg::FrameGraph& graph, const char* passName,
                                    const char* imageName, fg::TextureHandle radiance,
                                    fg::TextureHandle transmittance, fg::TextureHandle added = {});
 
+struct SumFrame {
+    int width = 0, height = 0;
+    uint32_t number = 1; // from 1, where what is kept of earlier frames is forgotten
+};
+
+struct Sum {
+    fg::TextureHandle image;
+    /// For each term image ~number of the first frame in which it held a value that is not finite; 0: none did. Null where there
+    /// is no term image.
+    fg::BufferHandle firstInvalid;
+};
+
 /// The sum of all images, in order; black where there is none.
-fg::TextureHandle addSumPass(fg::FrameGraph& graph, const TermImages& images, int width,
-                             int height);
+Sum addSumPass(fg::FrameGraph& graph, const TermImages& images, const SumFrame& frame);
 
 /// Mean of `image` over `frame` frames, this one included (frame 1 starts anew), kept under `historyName`.
 /// Alpha holds the sum of squared deviations of luminance.

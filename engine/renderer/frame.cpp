@@ -82,9 +82,10 @@ void addTechniques(fg::FrameGraph& graph, const FrameParts& parts, const FrameOr
         if (holds(graph, outputs.onSurfaces))
             frame.terms.add(inputs.terms & kIndirectOnSurfaces,
                             addCompositePass(graph, "composite.indirect", "term.indirectOnSurfaces",
-                                             outputs.onSurfaces, frame.transmittance));
+                                             outputs.onSurfaces, frame.transmittance),
+                            int(i));
         if (holds(graph, outputs.inMedia))
-            frame.terms.add(inputs.terms & ~kIndirectOnSurfaces, outputs.inMedia);
+            frame.terms.add(inputs.terms & ~kIndirectOnSurfaces, outputs.inMedia, int(i));
         keepStatistics(outputs, frame);
     }
 }
@@ -168,7 +169,10 @@ FrameImages recordFrame(fg::FrameGraph& graph, const FrameParts& parts, const Fr
                                 {order.view, images.gbuffer.depth, march.transmittance, lights,
                                  media.resources, &parts.environment, parts.surfaceLightSettings},
                                 images.terms);
-    images.beauty = addSumPass(graph, images.terms, order.view.width, order.view.height);
+    const uint32_t frame = order.averagedFrame > 0 ? order.averagedFrame : order.frameIndex + 1;
+    const Sum sum = addSumPass(graph, images.terms, {order.view.width, order.view.height, frame});
+    images.beauty = sum.image;
+    images.firstInvalid = sum.firstInvalid;
     if (order.averagedFrame > 0) addAverages(graph, order, images);
 
     // A picture for people.

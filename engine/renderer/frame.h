@@ -38,7 +38,8 @@ struct FrameOrder {
     dvec3 renderOrigin{0}; // world
     float ev100 = 0;
     uint32_t averagedFrame =
-        0; // 0: this frame stands alone; else its number in the average, from 1
+        0;                   // 0: this frame stands alone; else its number in the average, from 1
+    uint32_t frameIndex = 0; // as in FrameRequest
     bool separateTerms = false;            // an image a term is wanted
     bool statistics = false;               // numbers about techniques are wanted
     std::span<const Bounds> surfaceBounds; // of everything drawn, render space
@@ -59,6 +60,7 @@ struct FrameImages {
         beauty; // their sum; averaged where the frame is, alpha then holds squared deviations
     fg::TextureHandle display; // RGBA8
     fg::BufferHandle invalidPixels;
+    fg::BufferHandle firstInvalid; // see shaders/post/sum.comp
     std::vector<StatisticsBuffer> statistics;
 };
 

@@ -187,6 +187,7 @@ void Renderer::Impl::fillOrder(const FrameRequest& request, const FramePlan& pla
     order.ev100 = scene->ev100;
     order.separateTerms = request.separateTerms;
     order.statistics = request.statistics;
+    order.frameIndex = request.frameIndex;
     order.averagedFrame = request.converge ? average.next(averageKey(request), request.restart) : 0;
     order.sceneState = describeScene();
 }
@@ -221,6 +222,7 @@ void Renderer::Impl::markOutputs(fg::FrameGraph& graph, const FrameRequest& requ
     if (request.separateTerms)
         for (uint32_t i = 0; i < images.terms.count; ++i)
             graph.markOutput(images.terms.images[i].image);
+    if (images.firstInvalid) graph.markOutput(images.firstInvalid);
     for (const StatisticsBuffer& statistics : images.statistics)
         graph.markOutput(statistics.values);
 }
@@ -234,7 +236,18 @@ void Renderer::Impl::measureAverage(FrameResult& result) {
 }
 
 Result<FrameResult> Renderer::renderFrame(const FrameRequest& request) {
-    Impl& r = *impl_;
+    try {
+        return impl_->renderFrame(request);
+    } catch (const gl::NoRoom& lack) {
+        impl_->order.plan = nullptr; // it was that call's
+        return Error{fmt::format(
+            "a picture of {}x{} pixels cannot be made here: {}; a smaller --size or a lower --quality needs less",
+            request.width, request.height, lack.what())};
+    }
+}
+
+Result<FrameResult> Renderer::Impl::renderFrame(const FrameRequest& request) {
+    Impl& r = *this;
     CHECK(r.scene != nullptr, "setScene() comes before renderFrame()");
     if (request.width < 1 || request.height < 1 || request.width > kLargestPicture ||
         request.height > kLargestPicture)

@@ -70,6 +70,13 @@ struct TermImage {
     Image image;
 };
 
+/// A term image that held a value that is not finite: whose, and in which frame first (counted from 1; in the average, where frames are averaged).
+struct InvalidTerms {
+    TermSet terms = 0;
+    int owner = kDirectPasses; // or an index into Renderer::techniques()
+    uint32_t firstFrame = 0;
+};
+
 /// What the scene can have in a picture, as makePlan() asks for it. `mediaEnabled`: the setting media.enabled.
 SceneTraits sceneTraits(const Scene& scene, bool mediaEnabled);
 
@@ -89,11 +96,15 @@ public:
     Result<void> setScene(const Scene& scene);
 
     /// Records and runs one frame. Errors: no camera, sizes out of range, unknown technique, a shader that never compiled.
+    /// The driver has no room for a picture of this size.
     Result<FrameResult> renderFrame(const FrameRequest& request);
 
     // Read-backs of the last frame; each waits for the GPU. Linear and unexposed, top row first.
     [[nodiscard]] Image readBeauty();
     [[nodiscard]] std::vector<TermImage> readTerms();
+    /// Since the first frame, or since the average began; the earliest first. Empty although the picture is not finite: what was done
+    /// to the sum of the terms made it so (plugins' post effects).
+    [[nodiscard]] std::vector<InvalidTerms> readInvalidTerms();
     /// Numbers about the frame's techniques by name (plugin::Statistic); none unless the request asked for them.
     [[nodiscard]] std::map<std::string, double> readStatistics();
     /// `depth` (metres along the ray, Y), `normal` (world, RGB), `albedo` (RGB), `transmittance` (RGB).

@@ -65,6 +65,8 @@ struct Renderer::Impl {
     fg::TextureHandle inspected;
 
     void registerSettings();
+    /// Throws gl::NoRoom.
+    Result<FrameResult> renderFrame(const FrameRequest& request);
     // The steps of a frame, in order.
     Result<CameraPose> choosePose(const FrameRequest& request) const;
     void updateReach(const Viewer& viewer);

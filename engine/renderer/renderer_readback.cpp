@@ -83,6 +83,22 @@ std::vector<TermImage> Renderer::readTerms() {
     return result;
 }
 
+std::vector<InvalidTerms> Renderer::readInvalidTerms() {
+    std::vector<InvalidTerms> result;
+    const TermImages& terms = impl_->images.terms;
+    if (terms.count == 0) return result;
+    const std::vector<std::byte> bytes = impl_->executor.readBuffer(impl_->images.firstInvalid);
+    for (uint32_t i = 0; i < terms.count; ++i) {
+        uint32_t kept = 0; // ~frame, so that the first one is the largest number
+        CHECK((i + 1) * sizeof kept <= bytes.size());
+        std::memcpy(&kept, &bytes[i * sizeof kept], sizeof kept);
+        if (kept != 0) result.push_back({terms.images[i].terms, terms.images[i].owner, ~kept});
+    }
+    std::stable_sort(result.begin(), result.end(),
+                     [](const auto& a, const auto& b) { return a.firstFrame < b.firstFrame; });
+    return result;
+}
+
 std::map<std::string, double> Renderer::readStatistics() {
     std::map<std::string, double> result;
     for (const StatisticsBuffer& statistics : impl_->images.statistics) {

@@ -4,6 +4,7 @@
 #include <array>
 
 #include "framegraph/handle.h"
+#include "transport/plan.h"
 #include "transport/terms.h"
 
 namespace tyndall {
@@ -14,14 +15,15 @@ inline constexpr size_t kMaxTermImages = 3 + 4 + 4 * 4;
 
 struct TermImageHandle {
     TermSet terms = 0;
-    fg::TextureHandle image; // RGBA32F, nits reaching the eye
+    fg::TextureHandle image;   // RGBA32F, nits reaching the eye
+    int owner = kDirectPasses; // or an index into the techniques, as in FramePlan
 };
 
 /// In the order in which they are summed. The first three are LE, LSE and LVE when they are rendered.
 struct TermImages {
     std::array<TermImageHandle, kMaxTermImages> images{};
     uint32_t count = 0;
-    void add(TermSet terms, fg::TextureHandle image);
+    void add(TermSet terms, fg::TextureHandle image, int owner = kDirectPasses);
     [[nodiscard]] fg::TextureHandle find(Term term) const;
     void replace(Term term, fg::TextureHandle image);
 };

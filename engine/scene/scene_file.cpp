@@ -17,12 +17,6 @@ namespace {
 
 constexpr size_t kMaxSceneFileBytes = size_t(1) << 28;
 
-std::string lowerCase(std::string text) {
-    std::transform(text.begin(), text.end(), text.begin(),
-                   [](char c) { return c >= 'A' && c <= 'Z' ? char(c - 'A' + 'a') : c; });
-    return text;
-}
-
 Result<void> readSceneFile(LoadedScene& loaded, const fs::path& path, const LoadOptions& options) {
     const auto text = readFile(path, kMaxSceneFileBytes);
     if (!text) return text.error();
@@ -45,8 +39,8 @@ Result<void> readGltfFile(LoadedScene& loaded, const fs::path& path, const LoadO
     return {};
 }
 
-Result<void> readVolumeFile(LoadedScene& loaded, const fs::path& path) {
-    if (auto medium = supplyMedium(loaded, path); !medium) return medium;
+Result<void> readVolumeFile(LoadedScene& loaded, const fs::path& path, const std::string& grid) {
+    if (auto medium = supplyMedium(loaded, path, grid); !medium) return medium;
     supplyCamera(loaded);
     supplyLight(loaded);
     supplyExposure(loaded);
@@ -92,18 +86,31 @@ void noteEndlessMedia(LoadedScene& loaded) {
                 medium.name));
 }
 
+/// Keyframes and sequences are read and written, and shown as they are before the clock starts.
+void noteUnplayed(LoadedScene& loaded) {
+    std::string moving;
+    for (const Node& node : loaded.scene.nodes) {
+        if (node.animations.empty() && !node.sequence) continue;
+        moving += moving.empty() ? "" : ", ";
+        moving += fmt::format("'{}' ({})", node.name, node.sequence ? "frames" : "animate");
+    }
+    if (!moving.empty())
+        loaded.notes.push_back(fmt::format(
+            "animations are not played yet: {} stand still as the scene file begins them", moving));
+}
+
 Result<LoadedScene> load(const fs::path& path, const LoadOptions& options) {
     LoadedScene loaded;
     loaded.scene.path = path;
     loaded.scene.name = path.stem().string();
-    const std::string extension = lowerCase(path.extension().string());
+    const std::string extension = lowerExtension(path);
     Result<void> read;
     if (extension == ".json")
         read = readSceneFile(loaded, path, options);
     else if (extension == ".gltf" || extension == ".glb")
         read = readGltfFile(loaded, path, options);
-    else if (extension == ".vdb" || extension == ".nvdb")
-        read = readVolumeFile(loaded, path);
+    else if (isBareVolume(path))
+        read = readVolumeFile(loaded, path, options.grid);
     else
         return Error{fmt::format(
             "{}: '{}' is not the ending of a scene; .scene.json, .gltf, .glb, .vdb and .nvdb are read",
@@ -111,11 +118,17 @@ Result<LoadedScene> load(const fs::path& path, const LoadOptions& options) {
     if (!read) return read.error();
     if (auto sane = checkTransforms(loaded.scene); !sane) return sane.error();
     noteEndlessMedia(loaded);
+    noteUnplayed(loaded);
     touchEverything(loaded.scene);
     return loaded;
 }
 
 } // namespace
+
+bool isBareVolume(const fs::path& path) {
+    const std::string extension = lowerExtension(path);
+    return extension == ".vdb" || extension == ".nvdb";
+}
 
 Result<LoadedScene> loadScene(const fs::path& path, const LoadOptions& options) {
     try {

@@ -23,7 +23,12 @@ struct LoadedScene {
 struct LoadOptions {
     /// 0..1 and what is being read; return false to cancel (an Error "cancelled" results).
     std::function<bool(float fraction, const std::string& what)> progress;
+    /// Of a bare .vdb or .nvdb: the density grid's name; "": as importGrid() finds it.
+    std::string grid = {};
 };
+
+/// Whether `path` is a volume without a scene file around it, by its ending: .vdb or .nvdb.
+[[nodiscard]] bool isBareVolume(const std::filesystem::path& path);
 
 /// Loads any SCENE that the programs accept. The error names the file and the place in it (JSON pointer, node, grid).
 Result<LoadedScene> loadScene(const std::filesystem::path& path, const LoadOptions& options = {});

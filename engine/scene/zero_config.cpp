@@ -133,8 +133,11 @@ void supplyExposure(LoadedScene& loaded) {
                                           double(scene.ev100), lux));
 }
 
-Result<void> supplyMedium(LoadedScene& loaded, const std::filesystem::path& file) {
-    auto grids = importGrid(file, {});
+Result<void> supplyMedium(LoadedScene& loaded, const std::filesystem::path& file,
+                          const std::string& grid) {
+    GridRequest request;
+    request.density = grid;
+    auto grids = importGrid(file, request);
     if (!grids) return grids.error();
     Medium medium;
     medium.name = file.stem().string();

@@ -21,6 +21,8 @@ void supplyExposure(LoadedScene& loaded);
 
 /// A node with the grid of a .vdb or .nvdb file, its own transform kept, as a medium of albedo 0.99 and
 /// an optical depth of about 4 across the largest extent.
-Result<void> supplyMedium(LoadedScene& loaded, const std::filesystem::path& file);
+/// `grid` is the density grid's name; "": as importGrid() finds it.
+Result<void> supplyMedium(LoadedScene& loaded, const std::filesystem::path& file,
+                          const std::string& grid);
 
 } // namespace tyndall

@@ -23,6 +23,13 @@ struct AccumulateParams {
     uint padding1;
 };
 
+struct SumParams {
+    uint base;        // number of the first term image of this pass
+    uint before;      // 1: image0 is the sum of those before
+    uint frame;       // counted from 1
+    uint padding0;
+};
+
 TYNDALL_CONST uint kInspect2D = 0u;
 TYNDALL_CONST uint kInspectArray = 1u;
 TYNDALL_CONST uint kInspect3D = 2u;

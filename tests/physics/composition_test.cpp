@@ -20,9 +20,15 @@ Rendered rendered(const std::string& gi, TermSet terms = kAllTerms) {
     options.gi = gi;
     options.terms = terms;
     // Every pixel gathers on its own: where one takes its neighbours' light depends on how that looks.
-    options.settings = {"gi.vpl.walks=16",    "gi.vpl.mapSide=16",    "gi.vpl.samples=4",
-                        "gi.vpl.march=full",  "gi.vpl.surfaces.resolution=full", "gi.lpv.resolution=8",
-                        "gi.lpv.rsmSize=32",  "gi.lpv.march=full",    "gi.lpv.cascades=1",
+    options.settings = {"gi.vpl.walks=16",
+                        "gi.vpl.mapSide=16",
+                        "gi.vpl.samples=4",
+                        "gi.vpl.march=full",
+                        "gi.vpl.surfaces.resolution=full",
+                        "gi.lpv.resolution=8",
+                        "gi.lpv.rsmSize=32",
+                        "gi.lpv.march=full",
+                        "gi.lpv.cascades=1",
                         "gi.vpl.candidates=1"};
     return sharedRenderer().render(sceneFromJson(corner(50, kFog)), options);
 }
@@ -31,9 +37,8 @@ TEST(Composition, ThreeTechniquesShareSixTermsAndEachImageIsThatOfItsTechniqueAl
     const std::string ofWalks = "LSSE=vpl,LVSE=vpl,LXSSE=vpl", ofLattice = "LSVE=lpv",
                       ofOctaves = "LVVE=octaves,LXVVE=octaves";
     const Rendered all = rendered(ofWalks + "," + ofLattice + "," + ofOctaves);
-    EXPECT_EQ(all.frame.plan.rendered,
-              kDirectTerms | terms(Term::LSSE, Term::LVSE, Term::LXSSE, Term::LSVE, Term::LVVE,
-                                   Term::LXVVE));
+    EXPECT_EQ(all.frame.plan.rendered, kDirectTerms | terms(Term::LSSE, Term::LVSE, Term::LXSSE,
+                                                            Term::LSVE, Term::LVVE, Term::LXVVE));
     EXPECT_EQ(all.frame.plan.missing, terms(Term::LXVSE, Term::LXSVE));
     ASSERT_EQ(all.terms.size(), 6u) << "three direct terms and an image from each technique";
     for (const std::string& one : {ofWalks, ofLattice, ofOctaves})
@@ -60,16 +65,25 @@ TEST(Composition, LightInTwoKindsOfMediaAddsUp) {
         std::string gi;
         for (uint32_t t = 0; t < kTermCount; ++t)
             if (options.terms & bit(Term(t)))
-                gi += (gi.empty() ? "" : ",") + std::string(termName(Term(t))) + media + "=" + technique;
+                gi += (gi.empty() ? "" : ",") + std::string(termName(Term(t))) + media + "=" +
+                      technique;
         options.gi = gi;
-        options.settings = {"gi.vpl.walks=16", "gi.vpl.mapSide=16", "gi.vpl.samples=256",
-                            "gi.vpl.march=full", "gi.vpl.classes=1", "gi.vpl.candidates=1",
-                            "gi.vpl.compensation=clamped", "gi.lpv.resolution=8",
-                            "gi.lpv.rsmSize=32", "gi.lpv.march=full", "octaves.count=2"};
+        options.settings = {"gi.vpl.walks=16",
+                            "gi.vpl.mapSide=16",
+                            "gi.vpl.samples=256",
+                            "gi.vpl.march=full",
+                            "gi.vpl.classes=1",
+                            "gi.vpl.candidates=1",
+                            "gi.vpl.compensation=clamped",
+                            "gi.lpv.resolution=8",
+                            "gi.lpv.rsmSize=32",
+                            "gi.lpv.march=full",
+                            "gi.octaves.count=2"};
         return sharedRenderer().render(scene, options).beauty;
     };
     // To rounding. Virtual lights are gathered at points that are drawn by how much scatters there: 256 on a ray leave some noise.
-    for (const auto& [technique, relmse] : {std::pair("octaves", 1e-10), {"lpv", 1e-10}, {"vpl", 1e-3}}) {
+    for (const auto& [technique, relmse] :
+         {std::pair("octaves", 1e-10), {"lpv", 1e-10}, {"vpl", 1e-3}}) {
         const Image inBoth = light(technique, ""), inBall = light(technique, ":shapes"),
                     inHaze = light(technique, ":height");
         EXPECT_GT(meanOf(inBall), 0.05 * meanOf(inBoth)) << technique;

@@ -107,7 +107,9 @@ TEST(SceneLoad, ACancelledOneStopsAtOnceAndLeavesTheSceneAsItWas) {
     Scene scene;
     JobControl whole(
         [&](const JobProgress& progress) { stepsUntilTheEnd += !progress.sentence.empty(); });
-    ASSERT_TRUE(loadScene(path, whole, scene).ok());
+    ViewOptions options;
+    options.scene = path;
+    ASSERT_TRUE(loadScene(options, whole, scene).ok());
     ASSERT_GT(stepsUntilTheEnd, 1);
 
     JobControl* self = nullptr;
@@ -118,7 +120,7 @@ TEST(SceneLoad, ACancelledOneStopsAtOnceAndLeavesTheSceneAsItWas) {
     self = &cancelled;
     Scene kept;
     kept.name = "as it was";
-    const Outcome outcome = loadScene(path, cancelled, kept);
+    const Outcome outcome = loadScene(options, cancelled, kept);
     EXPECT_EQ(outcome.status, ExitStatus::Failed);
     EXPECT_NE(outcome.message.find("interrupted"), std::string::npos) << outcome.message;
     EXPECT_EQ(kept.name, "as it was");

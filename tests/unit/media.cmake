@@ -14,4 +14,5 @@ target_link_libraries(tyndall_volume_test_support PRIVATE tyndall_warnings ${OPE
 # It runs once and takes minutes to optimise.
 set_source_files_properties(media_volume_files.cpp PROPERTIES COMPILE_OPTIONS -O0)
 
-tyndall_test(unit_media_import LABEL unit SOURCES media_import_test.cpp DEPENDS Tyndall::media tyndall_volume_test_support)
+tyndall_test(unit_media_import LABEL unit SOURCES media_cut_test.cpp media_import_test.cpp media_nanovdb_versions_test.cpp
+  DEPENDS Tyndall::media tyndall_volume_test_support)

@@ -341,8 +341,11 @@ TEST(ImportGrid, RefusesWhatIsNoDensityByNameAndClass) {
     EXPECT_NE(message(importGrid(folder() / "frustum.vdb")).find("frustum"), std::string::npos)
         << message(importGrid(folder() / "frustum.vdb"));
     test::writeOpenVdb(folder() / "two.vdb", {cloud("a"), cloud("b")});
-    EXPECT_NE(message(importGrid(folder() / "two.vdb")).find("say which one is density"),
-              std::string::npos);
+    const std::string two = message(importGrid(folder() / "two.vdb"));
+    EXPECT_NE(two.find("several grids that could be density, 'a' or 'b'; choose with --grid NAME"),
+              std::string::npos)
+        << two;
+    EXPECT_NE(two.find("\"grid\": \"NAME\" in a scene file"), std::string::npos) << two;
     EXPECT_NE(
         message(
             importGrid(folder() / "two.vdb",

@@ -1,5 +1,8 @@
 #include "media_volume_files.h"
 
+#include <fstream>
+
+#include <openvdb/io/Stream.h>
 #include <openvdb/openvdb.h>
 #include <openvdb/tools/Interpolation.h>
 
@@ -88,10 +91,39 @@ openvdb::GridBase::Ptr readGrid(const fs::path& path, const std::string& name) {
 
 } // namespace
 
-void writeOpenVdb(const fs::path& path, const std::vector<VolumeSpec>& specs) {
+void writeOpenVdb(const fs::path& path, const std::vector<VolumeSpec>& specs,
+                  const VdbLayout& layout) {
     openvdb::initialize();
     openvdb::GridPtrVec grids;
     for (const VolumeSpec& spec : specs) grids.push_back(makeAnyGrid(spec));
+    const auto write = [&](auto& file) {
+        using Codec = VdbLayout::Codec;
+        if (layout.codec != Codec::Default)
+            file.setCompression(openvdb::io::COMPRESS_ACTIVE_MASK |
+                                (layout.codec == Codec::Zip     ? openvdb::io::COMPRESS_ZIP
+                                 : layout.codec == Codec::Blosc ? openvdb::io::COMPRESS_BLOSC
+                                                                : openvdb::io::COMPRESS_NONE));
+        file.write(grids);
+    };
+    if (layout.offsets) {
+        openvdb::io::File file(path.string());
+        write(file);
+    } else {
+        std::ofstream output(path, std::ios::binary);
+        openvdb::io::Stream stream(output);
+        write(stream);
+    }
+}
+
+void writeInstances(const fs::path& path, const VolumeSpec& spec,
+                    const std::vector<std::string>& names) {
+    openvdb::initialize();
+    const openvdb::FloatGrid::Ptr first = makeGrid<openvdb::FloatGrid>(spec);
+    openvdb::GridPtrVec grids;
+    for (const std::string& name : names) {
+        grids.push_back(first->copy());
+        grids.back()->setName(name);
+    }
     openvdb::io::File(path.string()).write(grids);
 }
 

@@ -34,7 +34,17 @@ struct VolumeSpec {
 enum class NanoType { Float = 0, Double = 1, Fp4 = 2, Fp8 = 3, Fp16 = 4, FpN = 5 };
 enum class NanoCodec { None = 0, Zip = 1, Blosc = 2 };
 
-void writeOpenVdb(const std::filesystem::path& path, const std::vector<VolumeSpec>& grids);
+/// How an OpenVDB file is laid out.
+struct VdbLayout {
+    enum class Codec { Default = 0, None = 1, Zip = 2, Blosc = 3 };
+    Codec codec = Codec::Default;
+    bool offsets = true; // false: as through a pipe, without the places of the grids
+};
+void writeOpenVdb(const std::filesystem::path& path, const std::vector<VolumeSpec>& grids,
+                  const VdbLayout& layout = {});
+/// Grids that share one tree, which the file then holds once.
+void writeInstances(const std::filesystem::path& path, const VolumeSpec& grid,
+                    const std::vector<std::string>& names);
 /// The spec's type is ignored in favour of `type`.
 void writeNanoVdb(const std::filesystem::path& path, const VolumeSpec& grid, NanoType type,
                   NanoCodec codec);

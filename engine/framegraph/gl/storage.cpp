@@ -5,7 +5,9 @@
 #include <limits>
 
 #include "core/check.h"
+#include "core/cpu_profiler.h"
 #include "framegraph/gl/gl_format.h"
+#include "gl/context.h"
 
 namespace tyndall::fg {
 
@@ -95,7 +97,25 @@ Storage& StorageSet::takePooled(const PoolSlot& shape) {
     return *pool_.back().storage;
 }
 
+void StorageSet::checkRoom(const CompiledGraph& graph) const {
+    uint64_t wanted = 0, have = 0;
+    for (const PoolSlot& shape : graph.slots)
+        wanted +=
+            shape.isBuffer ? shape.buffer.bytes : uint64_t(gl::textureBytes(glSpec(shape.texture)));
+    for (const Pooled& pooled : pool_) have += pooled.storage->bytes();
+    // Below this no machine is in trouble, and the question costs nothing.
+    constexpr uint64_t kWorthAsking = uint64_t(1) << 30;
+    if (wanted < have + kWorthAsking || !gl::currentCapabilities().isSoftware()) return;
+    const uint64_t free = availableMemoryBytes();
+    // A quarter is left for what reads the pictures back and writes them.
+    if (wanted - have <= free / 4 * 3) return;
+    throw gl::NoRoom(
+        fmt::format("its passes need {:.1f} GiB of memory at once, of which {:.1f} GiB are free",
+                    double(wanted - have) / (1 << 30), double(free) / (1 << 30)));
+}
+
 void StorageSet::assignSlots(const CompiledGraph& graph) {
+    checkRoom(graph);
     slots_.clear();
     for (const PoolSlot& shape : graph.slots) slots_.push_back(&takePooled(shape));
 }

@@ -55,6 +55,7 @@ public:
     /// All pooled storage is free again; what was unused for long goes, as does persistent storage whose entry changed.
     void beginFrame(const PersistentTable& table);
     /// Storage for every slot of the frame, from the pool or new.
+    /// Throws gl::NoRoom where a driver on the processor would take more memory than there is: it hands out what nobody has.
     void assignSlots(const CompiledGraph& graph);
 
     Storage& slot(uint32_t index) { return *slots_[index]; }
@@ -74,6 +75,7 @@ public:
     [[nodiscard]] Totals totals() const;
 
 private:
+    void checkRoom(const CompiledGraph& graph) const;
     struct Pooled {
         std::unique_ptr<Storage> storage;
         PoolSlot shape;

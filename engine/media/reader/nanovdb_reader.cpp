@@ -1,17 +1,14 @@
-// The only source file that includes NanoVDB. Its trees are blocks of memory with offsets in them; every offset is
-// checked against the block here, because NanoVDB itself follows them blindly.
+// Grids of NanoVDB files, versions 32.x: they share one layout, but not the numbers that they begin with, nor the checksum.
+// Only this file and the nanovdb_ ones beside it include NanoVDB.
 
+#include "media/reader/nanovdb_checksum.h"
+#include "media/reader/nanovdb_tree.h"
 #include "media/reader/voxel_sink.h"
 
-#include <cmath>
-#include <cstdlib>
 #include <cstring>
 #include <fstream>
-#include <limits>
-#include <stdexcept>
 
 #include <nanovdb/NanoVDB.h>
-#include <nanovdb/util/GridChecksum.h>
 #include <nanovdb/util/IO.h>
 
 #include <blosc.h>
@@ -21,43 +18,6 @@ namespace tyndall::reader {
 
 namespace {
 
-[[noreturn]] void fail(const std::string& reason) { throw std::runtime_error(reason); }
-
-/// A grid in memory, aligned as NanoVDB wants it.
-class GridMemory {
-public:
-    explicit GridMemory(uint64_t bytes = 0) : bytes_(bytes) {
-        if (bytes == 0) return;
-        if (bytes > std::numeric_limits<uint64_t>::max() - 64) throw std::bad_alloc();
-        data_.reset(
-            static_cast<char*>(std::aligned_alloc(32, size_t((bytes + 31) & ~uint64_t(31)))));
-        if (!data_) throw std::bad_alloc();
-    }
-    [[nodiscard]] char* data() const { return data_.get(); }
-    [[nodiscard]] uint64_t size() const { return bytes_; }
-
-    /// The T at `pointer`, if it and `further` bytes behind it lie within.
-    template <typename T> const T& at(const void* pointer, uint64_t further = 0) const {
-        const uint64_t offset = uint64_t(reinterpret_cast<uintptr_t>(pointer) -
-                                         reinterpret_cast<uintptr_t>(data_.get()));
-        if (offset % alignof(T) != 0 || offset > bytes_ || bytes_ - offset < sizeof(T) ||
-            bytes_ - offset - sizeof(T) < further)
-            fail("it is damaged (its tree points outside itself)");
-        return *static_cast<const T*>(pointer);
-    }
-
-private:
-    struct Free {
-        void operator()(char* pointer) const { std::free(pointer); }
-    };
-    std::unique_ptr<char, Free> data_;
-    uint64_t bytes_;
-};
-
-const void* moved(const void* pointer, int64_t bytes) {
-    return reinterpret_cast<const void*>(reinterpret_cast<uintptr_t>(pointer) + uintptr_t(bytes));
-}
-
 struct Entry {
     nanovdb::io::MetaData meta;
     nanovdb::io::Codec codec;
@@ -65,98 +25,14 @@ struct Entry {
     std::string name;
 };
 
-/// Walks one tree, checks its offsets and, given a sink, sends its blocks and tiles. Places are those the parents say,
-/// whatever a child claims.
-template <typename Build> class TreeReader {
-public:
-    TreeReader(const GridMemory& memory, VoxelSink* sink) : memory_(memory), sink_(sink) {}
+/// "NanoVDB1": a grid of version 32.6 and later. "NanoVDB2": a file of 32.7 and later. "NanoVDB0" was both.
+constexpr uint64_t kMagic = NANOVDB_MAGIC_NUMBER, kGridMagic = kMagic + (uint64_t(1) << 56),
+                   kFileMagic = kMagic + (uint64_t(2) << 56);
 
-    void read() {
-        using Tree = nanovdb::TreeData<3>;
-        const Tree& tree = memory_.at<Tree>(memory_.data() + sizeof(nanovdb::GridData));
-        const auto& root = memory_.at<RootData>(moved(&tree, int64_t(tree.mNodeOffset[3])));
-        memory_.at<RootData>(&root, uint64_t(root.mTableSize) * sizeof(typename RootData::Tile));
-        background_ = asFloat(root.mBackground);
-        for (uint32_t i = 0; i < root.mTableSize; ++i) {
-            const auto& tile = *root.tile(i);
-            const nanovdb::Coord origin = tile.origin();
-            if (tile.child == 0)
-                sendTile({origin[0], origin[1], origin[2]}, kUpperSize, asFloat(tile.value),
-                         tile.state != 0);
-            else
-                readInternal<Upper>(moved(&root, tile.child), {origin[0], origin[1], origin[2]});
-        }
-    }
-
-private:
-    using Root = typename nanovdb::NanoTree<Build>::RootType;
-    using RootData = typename Root::DataType;
-    using Upper = typename Root::ChildNodeType;
-    using Lower = typename Upper::ChildNodeType;
-    using Leaf = typename Lower::ChildNodeType;
-    static constexpr int32_t kUpperSize = 4096;
-    using Place = std::array<int32_t, 3>;
-
-    static float asFloat(float value) { return value; }
-    static float asFloat(double value) {
-        constexpr double kLargest = double(std::numeric_limits<float>::max());
-        if (std::isfinite(value) && std::abs(value) > kLargest)
-            return value > 0 ? std::numeric_limits<float>::max() : -1.0f;
-        return float(value);
-    }
-
-    void sendTile(const Place& origin, int32_t size, float value, bool active) {
-        if (!sink_ || value == 0 || (!active && value == background_)) return;
-        sink_->tile(origin, size, value);
-    }
-
-    template <typename Node> void readInternal(const void* pointer, const Place& origin) {
-        const auto& node = memory_.at<typename Node::DataType>(pointer);
-        constexpr uint32_t kLog = Node::LOG2DIM;
-        constexpr int32_t kChildSize = int32_t(Node::ChildNodeType::DIM);
-        for (uint32_t n = 0; n < (1u << (3 * kLog)); ++n) {
-            // Unsigned sums: a hostile origin may wrap, and the importer then refuses the place.
-            const auto along = [&](uint32_t start, uint32_t cell) {
-                return int32_t(start + cell * uint32_t(kChildSize));
-            };
-            constexpr uint32_t kMask = (1u << kLog) - 1;
-            const Place place = {along(uint32_t(origin[0]), n >> (2 * kLog)),
-                                 along(uint32_t(origin[1]), (n >> kLog) & kMask),
-                                 along(uint32_t(origin[2]), n & kMask)};
-            if (!node.mChildMask.isOn(n))
-                sendTile(place, kChildSize, asFloat(node.mTable[n].value), node.mValueMask.isOn(n));
-            else if constexpr (std::is_same_v<Node, Upper>)
-                readInternal<Lower>(moved(&node, node.mTable[n].child), place);
-            else
-                readLeaf(moved(&node, node.mTable[n].child), place);
-        }
-    }
-
-    void readLeaf(const void* pointer, const Place& origin) {
-        using Data = typename Leaf::DataType;
-        const Data* leaf;
-        if constexpr (std::is_same_v<Build, nanovdb::FpN>) {
-            leaf = &memory_.at<Data>(pointer);
-            if ((leaf->mFlags >> 5) > 4)
-                fail("it is damaged (a leaf has an unknown number of bits)");
-            memory_.at<Data>(pointer, uint64_t(leaf->bitWidth()) * 64);
-        } else {
-            leaf = &memory_.at<Data>(pointer);
-        }
-        if (!sink_) return;
-        float values[512];
-        for (uint32_t i = 0; i < 512; ++i) {
-            values[i] = asFloat(leaf->getValue(i));
-            if (background_ != 0 && values[i] == background_ && !leaf->mValueMask.isOn(i))
-                values[i] = 0;
-        }
-        sink_->block(origin, values);
-    }
-
-    const GridMemory& memory_;
-    VoxelSink* sink_; // null: only check
-    float background_ = 0;
-};
+std::string versionText(const nanovdb::Version& version) {
+    return std::to_string(version.getMajor()) + "." + std::to_string(version.getMinor()) + "." +
+           std::to_string(version.getPatch());
+}
 
 class NanoVdbSource final : public GridSource {
 public:
@@ -166,10 +42,7 @@ public:
         readDirectory();
     }
 
-    std::string format() const override {
-        return "NanoVDB " + std::to_string(version_.getMajor()) + "." +
-               std::to_string(version_.getMinor()) + "." + std::to_string(version_.getPatch());
-    }
+    std::string format() const override { return "NanoVDB " + versionText(version_); }
 
     std::vector<GridDescription> list() override {
         std::vector<GridDescription> grids;
@@ -215,12 +88,11 @@ public:
 
 private:
     template <typename Build> void readTree(VoxelSink& sink) {
-        const auto& grid = memory_.at<nanovdb::NanoGrid<Build>>(memory_.data());
-        TreeReader<Build>(memory_, nullptr)
-            .read(); // first, because the checksum's own walk trusts the offsets
-        // "Full" compares as much as the file has: some record a checksum of the head alone, or none.
-        if (!nanovdb::validateChecksum(grid, nanovdb::ChecksumMode::Full))
-            fail("it is damaged (its checksum does not match its content)");
+        // First, because the checksum's own walk trusts the offsets.
+        TreeReader<Build>(memory_, nullptr).read();
+        if (!checksumMatches<Build>(memory_))
+            fail(
+                "it is damaged (its checksum does not match its content): convert the volume again");
         TreeReader<Build>(memory_, &sink).read();
     }
 
@@ -257,9 +129,48 @@ private:
         }
     }
 
+    [[noreturn]] void failCutOff() const {
+        fail("it is cut off: it ends after " + std::to_string(fileBytes_) + " bytes");
+    }
+
     void readBytes(void* out, uint64_t bytes) {
         file_.read(static_cast<char*>(out), std::streamsize(bytes));
-        if (!file_ || uint64_t(file_.gcount()) != bytes) fail("it is damaged (it ends too early)");
+        if (!file_ || uint64_t(file_.gcount()) != bytes) failCutOff();
+    }
+
+    /// A grid's bytes begin like the file's header in all versions before 32.7: with the same magic number. What follows tells
+    /// them apart: version, count and codec here; a checksum there, and the version behind it.
+    void refuseBareGrid(const nanovdb::io::Header& header) {
+        const bool isHeader = header.version.getMajor() == NANOVDB_MAJOR_VERSION_NUMBER &&
+                              header.codec < nanovdb::io::Codec::END;
+        if (header.magic != kGridMagic && (header.magic != kMagic || isHeader)) return;
+        struct {
+            nanovdb::Version version;
+            uint32_t flags, index, count;
+            uint64_t bytes;
+        } grid;
+        static_assert(offsetof(nanovdb::GridData, mVersion) == sizeof header &&
+                      offsetof(nanovdb::GridData, mGridSize) == sizeof header + 16);
+        readBytes(&grid, sizeof grid);
+        const bool isGrid = grid.version.getMajor() == NANOVDB_MAJOR_VERSION_NUMBER &&
+                            grid.index < grid.count && grid.bytes >= sizeof(nanovdb::GridData);
+        if (header.magic == kGridMagic || isGrid)
+            fail("it is a bare grid: the bytes of a NanoVDB " + versionText(grid.version) +
+                 " grid without the header of a file; write it with nanovdb::io::writeGrid");
+    }
+
+    void checkHeader(const nanovdb::io::Header& header, uint64_t position) {
+        constexpr const char* kRemedy =
+            " is understood: convert the volume again with such a version, or use its .vdb file";
+        const std::string major = std::to_string(NANOVDB_MAJOR_VERSION_NUMBER);
+        if (position == 0) refuseBareGrid(header);
+        if (header.magic != kMagic && header.magic != kFileMagic)
+            fail(position > 0 ? "it is damaged (a segment of it does not begin as it should)"
+                              : "it was written by an unknown version of NanoVDB; version " +
+                                    major + kRemedy);
+        if (header.version.getMajor() != NANOVDB_MAJOR_VERSION_NUMBER)
+            fail("it was written by NanoVDB " + versionText(header.version) + "; version " + major +
+                 kRemedy);
     }
 
     /// The heads of all segments, and where their grids lie.
@@ -269,23 +180,14 @@ private:
             file_.seekg(std::streamoff(position));
             nanovdb::io::Header header;
             readBytes(&header, sizeof header);
-            if (header.magic != NANOVDB_MAGIC_NUMBER)
-                fail(
-                    position > 0
-                        ? "it is damaged (a segment of it does not begin as it should)"
-                        : "it was written by a version of NanoVDB that is not understood; 32.3 to 32.5 are");
-            if (header.version.getMajor() != NANOVDB_MAJOR_VERSION_NUMBER)
-                fail("it was written by NanoVDB " + std::to_string(header.version.getMajor()) +
-                     "; version " + std::to_string(NANOVDB_MAJOR_VERSION_NUMBER) +
-                     " is understood");
+            checkHeader(header, position);
             version_ = header.version;
             const size_t firstOfSegment = entries_.size();
             for (uint16_t i = 0; i < header.gridCount; ++i) readEntry(header.codec);
             position = uint64_t(file_.tellg());
             for (size_t i = firstOfSegment; i < entries_.size(); ++i) {
                 entries_[i].offset = position;
-                if (entries_[i].meta.fileSize > fileBytes_ - position)
-                    fail("it is damaged (it ends too early)");
+                if (entries_[i].meta.fileSize > fileBytes_ - position) failCutOff();
                 position += entries_[i].meta.fileSize;
             }
         }
@@ -313,7 +215,8 @@ private:
             loaded_ = int64_t(grid);
         }
         const auto& data = memory_.at<nanovdb::GridData>(memory_.data());
-        if (data.mMagic != NANOVDB_MAGIC_NUMBER || data.mGridSize != memory_.size())
+        if ((data.mMagic != kMagic && data.mMagic != kGridMagic) ||
+            data.mGridSize != memory_.size())
             fail("it is damaged (a grid does not begin as it should)");
         return data;
     }

@@ -1,12 +1,12 @@
-// The only source file that includes OpenVDB.
+// Grids of OpenVDB files. Only this file and openvdb_archive include OpenVDB.
 
+#include "media/reader/openvdb_archive.h"
 #include "media/reader/voxel_sink.h"
 
 #include <cmath>
 #include <cstring>
 #include <limits>
 
-#include <openvdb/openvdb.h>
 #include <tbb/global_control.h>
 
 namespace tyndall::reader {
@@ -19,20 +19,6 @@ float toFloat(double value) {
     if (std::isfinite(value) && std::abs(value) > kLargest)
         return value > 0 ? std::numeric_limits<float>::max() : -std::numeric_limits<float>::max();
     return float(value);
-}
-
-/// Calls a function of the library; what it throws becomes a reason for people. Lack of memory stays what it is.
-template <typename Function> auto explained(Function function) -> decltype(function()) {
-    try {
-        return function();
-    } catch (const std::bad_alloc&) {
-        throw;
-    } catch (const std::exception& failure) {
-        // The library begins its messages with the name of the exception's class.
-        std::string reason = failure.what();
-        if (const size_t colon = reason.find(": "); colon < 20) reason.erase(0, colon + 2);
-        throw std::runtime_error("it is damaged (OpenVDB says: " + reason + ")");
-    }
 }
 
 std::array<int32_t, 3> asArray(const openvdb::Coord& c) { return {c.x(), c.y(), c.z()}; }
@@ -102,46 +88,37 @@ template <typename Grid> void readScalars(const Grid& grid, VoxelSink& sink) {
 
 class OpenVdbSource final : public GridSource {
 public:
-    explicit OpenVdbSource(const std::string& path) : file_(path) {
-        openvdb::initialize();
-        explained([&] {
-            file_.open(/*delayLoad=*/false);
-        }); // nothing is mapped or copied to a temporary file
-    }
+    explicit OpenVdbSource(const std::string& path) : file_(path) {}
 
     std::string format() const override { return "OpenVDB " + std::to_string(file_.fileVersion()); }
 
     std::vector<GridDescription> list() override {
         std::vector<GridDescription> grids;
-        for (auto name = file_.beginName(); name != file_.endName(); ++name) {
-            names_.push_back(name.gridName());
-            grids.push_back(describeFromHeader(names_.back()));
-        }
+        for (size_t i = 0; i < file_.size(); ++i) grids.push_back(describeFromHeader(i));
         return grids;
     }
 
     GridDescription measure(uint32_t grid) override {
-        const openvdb::GridBase::Ptr whole =
-            explained([&] { return file_.readGrid(names_.at(grid)); });
-        GridDescription result = describe(*whole, names_[grid]);
+        const openvdb::GridBase::Ptr whole = file_.readGrid(grid);
+        GridDescription result = describe(*whole, file_.name(grid));
         addExtent(result, whole->evalActiveVoxelBoundingBox(), whole->activeVoxelCount());
         return result;
     }
 
     void read(uint32_t grid, VoxelSink& sink) override {
-        const openvdb::GridBase::Ptr whole =
-            explained([&] { return file_.readGrid(names_.at(grid)); });
+        const openvdb::GridBase::Ptr whole = file_.readGrid(grid);
         if (const auto floats = openvdb::gridConstPtrCast<openvdb::FloatGrid>(whole))
             return readScalars(*floats, sink);
         if (const auto doubles = openvdb::gridConstPtrCast<openvdb::DoubleGrid>(whole))
             return readScalars(*doubles, sink);
-        throw std::runtime_error("grid '" + names_[grid] + "' holds no scalars");
+        throw std::runtime_error("grid '" + file_.name(grid) + "' holds no scalars");
     }
 
 private:
-    GridDescription describeFromHeader(const std::string& name) {
+    GridDescription describeFromHeader(size_t grid) {
+        const std::string name = file_.name(grid);
         try {
-            const openvdb::GridBase::Ptr header = file_.readGridMetadata(name);
+            const openvdb::GridBase::Ptr header = file_.readHeader(grid);
             GridDescription result = describe(*header, name);
             const auto lowest =
                 header->getMetadata<openvdb::Vec3IMetadata>(openvdb::GridBase::META_FILE_BBOX_MIN);
@@ -154,8 +131,7 @@ private:
                           {openvdb::Coord(lowest->value()), openvdb::Coord(highest->value())},
                           uint64_t(count->value()));
             return result;
-        } catch (
-            const openvdb::Exception&) { // a type that this version of the library does not know
+        } catch (const std::runtime_error&) { // of what this version of the library does not know
             GridDescription unknown;
             unknown.name = name;
             unknown.type = "unreadable";
@@ -166,8 +142,7 @@ private:
 
     tbb::global_control oneThread_{tbb::global_control::max_allowed_parallelism,
                                    1}; // memory limits count stacks
-    openvdb::io::File file_;
-    std::vector<std::string> names_;
+    OpenVdbArchive file_;
 };
 
 } // namespace

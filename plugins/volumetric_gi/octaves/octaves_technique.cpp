@@ -7,24 +7,24 @@ namespace tyndall::volumetric_gi {
 namespace {
 
 const SettingDesc kOctavesSettings[] = {
-    TYNDALL_INT(OctavesSettings, count, "octaves.count", "Octaves", "", 0, 16, 7,
+    TYNDALL_INT(OctavesSettings, count, "gi.octaves.count", "Octaves", "", 0, 16, 7,
                 "Octaves beyond single scattering; 0 turns the technique off."),
     TYNDALL_FLOAT(
-        OctavesSettings, scatteringFactor, "octaves.scatteringFactor", "Scattering factor", "", 0,
-        1, 0.5,
+        OctavesSettings, scatteringFactor, "gi.octaves.scatteringFactor", "Scattering factor", "",
+        0, 1, 0.5,
         "Each octave scatters so much of the one before; energy stays bounded while it is no larger than the extinction factor."),
-    TYNDALL_FLOAT(OctavesSettings, extinctionFactor, "octaves.extinctionFactor",
+    TYNDALL_FLOAT(OctavesSettings, extinctionFactor, "gi.octaves.extinctionFactor",
                   "Extinction factor", "", 0, 1, 0.5,
                   "Each octave's light meets so much of the optical depth of the one before."),
-    TYNDALL_FLOAT(OctavesSettings, phaseFactor, "octaves.phaseFactor", "Phase factor", "", 0, 1,
+    TYNDALL_FLOAT(OctavesSettings, phaseFactor, "gi.octaves.phaseFactor", "Phase factor", "", 0, 1,
                   0.5, "Each octave scatters with so much of the anisotropy of the one before."),
 };
 
 constexpr PresetEntry kOctavesPresets[] = {
-    {Quality::Low, "octaves.count", "3"},
-    {Quality::Medium, "octaves.count", "5"},
-    {Quality::High, "octaves.count", "7"},
-    {Quality::Ultra, "octaves.count", "10"},
+    {Quality::Low, "gi.octaves.count", "3"},
+    {Quality::Medium, "gi.octaves.count", "5"},
+    {Quality::High, "gi.octaves.count", "7"},
+    {Quality::Ultra, "gi.octaves.count", "10"},
 };
 
 } // namespace
@@ -34,7 +34,8 @@ const plugin::TechniqueInfo& OctavesTechnique::info() const {
     static constexpr plugin::TechniqueInfo kInfo{
         .name = "octaves",
         .title = "Octaves of multiple scattering",
-        .help = "Baseline: multiple scattering as reduced copies of single scattering, inside the march.",
+        .help =
+            "Baseline: multiple scattering as reduced copies of single scattering, inside the march.",
         .claims = kSets[0],
         .sets = kSets,
         .setCount = 1,
@@ -58,7 +59,7 @@ plugin::FrameOutputs OctavesTechnique::addPasses(fg::FrameGraph& graph,
     plugin::FrameOutputs outputs;
     outputs.inMedia = addLitMarch(
         graph, inputs, {"gi.octaves.march", "gi.octaves.inScatter", "gi/octaves/march.comp"},
-        params, settings_.count == 0 ? "setting octaves.count is 0" : nullptr);
+        params, settings_.count == 0 ? "setting gi.octaves.count is 0" : nullptr);
     return outputs;
 }
 
