@@ -18,6 +18,11 @@ public:
     /// Renders a frame if one is due, or the tone-mapping pass alone where only exposure or tone curve changed. `frameIndex` of the request is chosen here: 0 for still pictures, counting when they are
     /// averaged, as `tyndall capture` does. True when there is a new picture.
     bool update(Renderer& renderer, const Scene& scene, FrameRequest request);
+    /// Would update() render a frame? A new exposure is not one.
+    [[nodiscard]] bool isDue(Renderer& renderer, const Scene& scene,
+                             const FrameRequest& request) const {
+        return !atRest_ || keyOf(renderer, scene, request) != key_;
+    }
     /// Renders again though nothing changed, such as after shaders were reloaded.
     void invalidate() { key_.clear(); }
 

@@ -54,7 +54,8 @@ void drawInspectSettings(Session& session) {
             tooltip(field.help);
             ImGui::SameLine();
             std::string changed;
-            if (settingWidget(field, group.values, ImGui::GetFontSize() * 5, changed))
+            if (settingWidget(session.panes.typed, field, group.values, ImGui::GetFontSize() * 5,
+                              changed))
                 session.edit(changeSettings(session.settings(), fmt::format("set {}", field.key),
                                             {{field.key, changed}}));
             tooltip(field.help);
