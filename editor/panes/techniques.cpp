@@ -16,10 +16,12 @@ const char* meaning(Term term) {
     case Term::LVSE: return "Light scattered by a medium onto a surface";
     case Term::LSVE: return "Light reflected by a surface, then scattered by a medium";
     case Term::LVVE: return "Light scattered twice by media";
-    case Term::LXSSE: return "Light that was scattered before it went as in LSSE";
-    case Term::LXVSE: return "Light that was scattered before it went as in LVSE";
-    case Term::LXSVE: return "Light that was scattered before it went as in LSVE";
-    case Term::LXVVE: return "Light that was scattered before it went as in LVVE";
+    case Term::LXSSE: return "Light scattered three times or more, at last by two surfaces";
+    case Term::LXVSE:
+        return "Light scattered three times or more, at last by a medium, then by a surface";
+    case Term::LXSVE:
+        return "Light scattered three times or more, at last by a surface, then by a medium";
+    case Term::LXVVE: return "Light scattered three times or more, at last by media twice";
     }
     return "";
 }
