@@ -15,8 +15,9 @@ namespace tyndall::editor {
 
 class LivePicture {
 public:
-    /// Renders a frame if one is due, or the tone-mapping pass alone where only exposure or tone curve changed. `frameIndex` of the request is chosen here: 0 for still pictures, counting when they are
-    /// averaged, as `tyndall capture` does. True when there is a new picture.
+    /// Renders a frame if one is due, or the tone-mapping pass alone where only exposure or tone curve changed. `frameIndex` of
+    /// the request is chosen here: 0 for still pictures, counting when they are averaged, as `tyndall capture` does. True when
+    /// there is a new picture.
     bool update(Renderer& renderer, const Scene& scene, FrameRequest request);
     /// Would update() render a frame? A new exposure is not one.
     [[nodiscard]] bool isDue(Renderer& renderer, const Scene& scene,

@@ -9,8 +9,9 @@
 
 namespace tyndall::editor {
 
-/// Options that lead from `ofScene` (all settings by key, as the scene file has them) to what the registry holds now: `--quality NAME` where a preset comes nearer,
-/// and one option for each setting that then still differs, `--gi NAME` for `techniqueKey`. Settings whose keys begin with "inspect." are left out. Words for a shell.
+/// Options that lead from `ofScene` (all settings by key, as the scene file has them) to what the registry holds now:
+/// `--quality NAME` where a preset comes nearer, and one option for each setting that then still differs, `--gi NAME` for
+/// `techniqueKey`. Settings whose keys begin with "inspect." are left out. Words for a shell.
 std::vector<std::string> settingOptions(const SettingsRegistry& settings,
                                         const std::map<std::string, std::string>& ofScene,
                                         const std::string& techniqueKey);
