@@ -18,7 +18,8 @@ set(TYNDALL_ROOM_plugin_any plugin tracing scene media transport framegraph shad
 set(TYNDALL_ROOM_app renderer reference tracing plugin builtin_plugins scene media transport framegraph framegraph_gl gl core)
 set(TYNDALL_ROOM_tyndall app ${TYNDALL_ROOM_app})
 set(TYNDALL_ROOM_editor_model scene core)
-set(TYNDALL_ROOM_tyndall-editor app editor_model gl_window ${TYNDALL_ROOM_app})
+set(TYNDALL_ROOM_editor_widgets editor_model scene core)
+set(TYNDALL_ROOM_tyndall-editor app editor_model editor_widgets gl_window ${TYNDALL_ROOM_app})
 
 # Refuses to configure where `room` links what its arrows do not lead to. Libraries of others (fmt::fmt) are not looked at.
 function(tyndall_check_arrows room)

@@ -16,26 +16,9 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr double kIdleSeconds =
-    0.25;                        // how often changed shaders are looked for while nothing happens
-constexpr int kSettleFrames = 3; // of the interface, after an event
-
-/// The window's user pointer is a flag that any event sets.
-void wake(GLFWwindow* window) { *static_cast<bool*>(glfwGetWindowUserPointer(window)) = true; }
-
-/// Before ImGui's, which calls these on.
-void listen(GLFWwindow* window, bool* flag) {
-    glfwSetWindowUserPointer(window, flag);
-    glfwSetCursorPosCallback(window, [](GLFWwindow* w, double, double) { wake(w); });
-    glfwSetCursorEnterCallback(window, [](GLFWwindow* w, int) { wake(w); });
-    glfwSetMouseButtonCallback(window, [](GLFWwindow* w, int, int, int) { wake(w); });
-    glfwSetScrollCallback(window, [](GLFWwindow* w, double, double) { wake(w); });
-    glfwSetKeyCallback(window, [](GLFWwindow* w, int, int, int, int) { wake(w); });
-    glfwSetCharCallback(window, [](GLFWwindow* w, unsigned) { wake(w); });
-    glfwSetWindowFocusCallback(window, [](GLFWwindow* w, int) { wake(w); });
-    glfwSetFramebufferSizeCallback(window, [](GLFWwindow* w, int, int) { wake(w); });
-    glfwSetWindowRefreshCallback(window, [](GLFWwindow* w) { wake(w); });
-    glfwSetWindowCloseCallback(window, [](GLFWwindow* w) { wake(w); });
-}
+    0.25; // how often changed shaders are looked for while nothing happens
+constexpr double kHeldSeconds = 1.0 / 60; // what is held down with the mouse may go on by itself
+constexpr int kSettleFrames = 3;          // of the interface, after an event
 
 } // namespace
 
@@ -80,19 +63,19 @@ Outcome App::openSession(Scene scene) {
     if (options_.frames == 0 && window_.context().capabilities().isSoftware())
         session_->reduction = 2;
 
-    listen(window_.handle(), &eventArrived_);
+    input_.listen(window_.handle());
     interface_ = std::make_unique<UserInterface>(window_, layout_, !options_.hidden);
-    savePath_ = fs::path(options_.render.scene)
-                    .filename()
-                    .replace_extension("")
-                    .replace_extension("")
-                    .string() +
-                "-edited.scene.json";
+    saveDialog_.setPath(fs::path(options_.render.scene)
+                            .filename()
+                            .replace_extension("")
+                            .replace_extension("")
+                            .string() +
+                        "-edited.scene.json");
     return {};
 }
 
 bool App::done() const {
-    if (quit_) return true;
+    if (saveDialog_.quits()) return true;
     const LivePicture& picture = session_->picture();
     return options_.frames > 0 && picture.frames() >= uint64_t(options_.frames);
 }
@@ -106,6 +89,7 @@ Outcome App::loop() {
         drawInterface();
         if (beforeFirstPicture_ > 0 && --beforeFirstPicture_ > 0)
             continue; // the pane's size is only known once the interface has settled
+        announceRendering();
         if (session_->update()) {
             interfaceFrames_ =
                 std::max(interfaceFrames_, 1); // the new picture is shown by the next
@@ -119,7 +103,8 @@ Outcome App::loop() {
         }
         if (window_.shouldClose()) {
             glfwSetWindowShouldClose(window_.handle(), GLFW_FALSE);
-            askToQuit_ = true;
+            saveDialog_.askToQuit();
+            interfaceFrames_ = kSettleFrames;
         }
     }
     if (!session_->picture().failure().empty() && options_.frames > 0)
@@ -132,7 +117,8 @@ Outcome App::loop() {
 }
 
 void App::waitForEvents() {
-    const bool busy = !session_->picture().atRest() || interfaceFrames_ > 0 || options_.frames > 0;
+    const bool busy = !session_->picture().atRest() || interfaceFrames_ > 0 ||
+                      options_.frames > 0 || !input_.queue().empty();
     if (busy) {
         gl::Window::pollEvents();
     } else if (
@@ -142,21 +128,43 @@ void App::waitForEvents() {
         interfaceFrames_ = 1;
         gl::Window::pollEvents();
     } else {
-        glfwWaitEventsTimeout(kIdleSeconds);
+        glfwWaitEventsTimeout(ImGui::IsAnyMouseDown() ? kHeldSeconds : kIdleSeconds);
     }
-    const bool held =
-        ImGui::IsAnyMouseDown() ||
-        ImGui::GetIO().WantTextInput; // keys that are held move the camera; a cursor blinks
-    if (eventArrived_ || held) interfaceFrames_ = kSettleFrames;
-    eventArrived_ = false;
+    if (input_.takeArrived()) interfaceFrames_ = kSettleFrames;
+    // Keys that are held move the camera. A text cursor does not blink, so nothing moves beside it.
+    if (ImGui::IsAnyMouseDown() && glfwGetTime() - lastDrawn_ >= kHeldSeconds)
+        interfaceFrames_ = std::max(interfaceFrames_, 1);
+}
+
+void App::announceRendering() {
+    if (session_->pictureIsDue() == session_->panes.rendering) return;
+    session_->panes.rendering = !session_->panes.rendering;
+    interfaceFrames_ = std::max(interfaceFrames_, 1);
+    drawInterface();
 }
 
 void App::drawInterface() {
+    if (interfaceFrames_ == 0 && input_.queue().empty()) return;
+    interfaceFrames_ = std::max(interfaceFrames_ - 1, 0);
     const ivec2 size = window_.framebufferSize();
-    if (interfaceFrames_ == 0 || size.x < 1 || size.y < 1) return;
-    --interfaceFrames_;
-    interface_->beginFrame();
+    do {
+        interfaceFrame(size);
+    } while (!input_.queue().empty());
+    updateTitle();
+}
+
+void App::interfaceFrame(ivec2 size) {
+    interface_->beginFrame(input_.queue());
+    session_->beginPanes();
     if (!ImGui::IsAnyItemActive()) session_->history().seal(); // one drag, one step
+    if (size.x > 0 && size.y > 0) drawPanes();                 // else it is minimised
+    if (size.x < 1 || size.y < 1 || !input_.queue().empty()) return interface_->endFrameUnseen();
+    interface_->endFrame(size);
+    window_.swapBuffers();
+    lastDrawn_ = glfwGetTime();
+}
+
+void App::drawPanes() {
     drawMenu();
     const ImGuiViewport* viewport = ImGui::GetMainViewport();
     ImGui::SetNextWindowPos(viewport->WorkPos);
@@ -171,10 +179,8 @@ void App::drawInterface() {
     layout_.draw(*session_);
     ImGui::End();
     handleKeys();
-    drawSaveDialog();
-    interface_->endFrame(size);
-    window_.swapBuffers();
-    updateTitle();
+    saveDialog_.draw(session_->history().hasUnsavedEdits(),
+                     [this](const std::string& path) { return session_->saveScene(path); });
 }
 
 void App::updateTitle() {
@@ -209,13 +215,13 @@ void App::copyCommandLine() {
 }
 
 void App::drawFileMenu() {
-    if (ImGui::MenuItem("Save a copy as...", "Ctrl+S")) openSaveDialog_ = true;
+    if (ImGui::MenuItem("Save a copy as...", "Ctrl+S")) saveDialog_.ask(false);
     ImGui::Separator();
     if (ImGui::MenuItem("Screenshot as displayed (PNG)", "F12")) screenshot("png");
     if (ImGui::MenuItem("Linear picture (EXR)")) screenshot("exr");
     if (ImGui::MenuItem("Copy as command line", "Ctrl+L")) copyCommandLine();
     ImGui::Separator();
-    if (ImGui::MenuItem("Quit", "Ctrl+Q")) askToQuit_ = true;
+    if (ImGui::MenuItem("Quit", "Ctrl+Q")) saveDialog_.askToQuit();
 }
 
 void App::drawEditMenu() {
@@ -253,7 +259,7 @@ void App::drawMenu() {
             "  wheel                        nearer, farther\n"
             "  F                            frame the selection, or the scene\n"
             "  Home                         the scene's camera\n"
-            "  Esc                          clear the selection, show the picture\n\n"
+            "  Esc                          close what is open, else clear the selection\n\n"
             "Everything that can be dragged can be typed: Ctrl + click.");
         ImGui::EndMenu();
     }
@@ -265,51 +271,18 @@ void App::drawMenu() {
     ImGui::EndMainMenuBar();
 }
 
-void App::drawSaveDialog() {
-    if (openSaveDialog_) ImGui::OpenPopup("Save a copy");
-    openSaveDialog_ = false;
-    if (ImGui::BeginPopupModal("Save a copy", nullptr, ImGuiWindowFlags_AlwaysAutoResize)) {
-        char path[1024] = {};
-        savePath_.copy(path, sizeof path - 1);
-        ImGui::SetNextItemWidth(ImGui::GetFontSize() * 28);
-        if (ImGui::IsWindowAppearing()) ImGui::SetKeyboardFocusHere();
-        const bool entered =
-            ImGui::InputText("##path", path, sizeof path, ImGuiInputTextFlags_EnterReturnsTrue);
-        savePath_ = path;
-        if (ImGui::Button("Save") || entered) {
-            session_->saveScene(savePath_);
-            ImGui::CloseCurrentPopup();
-        }
-        ImGui::SameLine();
-        if (ImGui::Button("Cancel")) ImGui::CloseCurrentPopup();
-        ImGui::EndPopup();
-    }
-    if (askToQuit_ && !session_->history().hasUnsavedEdits()) quit_ = true;
-    if (askToQuit_ && !quit_) ImGui::OpenPopup("Quit?");
-    askToQuit_ = false;
-    if (!ImGui::BeginPopupModal("Quit?", nullptr, ImGuiWindowFlags_AlwaysAutoResize)) return;
-    ImGui::TextUnformatted("The scene has edits that are in no file.");
-    if (ImGui::Button("Save a copy...")) {
-        openSaveDialog_ = true;
-        ImGui::CloseCurrentPopup();
-    }
-    ImGui::SameLine();
-    if (ImGui::Button("Quit without them")) quit_ = true;
-    ImGui::SameLine();
-    if (ImGui::Button("Stay")) ImGui::CloseCurrentPopup();
-    ImGui::EndPopup();
-}
-
 void App::handleKeys() {
     const ImGuiIO& io = ImGui::GetIO();
     if (io.WantTextInput) return;
     const auto pressed = [](int key) { return ImGui::IsKeyPressed(key, false); };
+    if (pressed(GLFW_KEY_ESCAPE) && closeInnermostPopup()) return;
+    if (ImGui::IsPopupOpen(nullptr, ImGuiPopupFlags_AnyPopup)) return; // keys are its own
     History& history = session_->history();
     if (io.KeyCtrl) {
         if (pressed(GLFW_KEY_Z)) io.KeyShift ? history.redo() : history.undo();
         if (pressed(GLFW_KEY_Y)) history.redo();
-        if (pressed(GLFW_KEY_S)) openSaveDialog_ = true;
-        if (pressed(GLFW_KEY_Q)) askToQuit_ = true;
+        if (pressed(GLFW_KEY_S)) saveDialog_.ask(false);
+        if (pressed(GLFW_KEY_Q)) saveDialog_.askToQuit();
         if (pressed(GLFW_KEY_L)) copyCommandLine();
         return;
     }
@@ -319,7 +292,7 @@ void App::handleKeys() {
     if (pressed(GLFW_KEY_C)) session_->request.converge = !session_->request.converge;
     if (pressed(GLFW_KEY_F12)) screenshot("png");
     if (pressed(GLFW_KEY_ESCAPE)) {
-        session_->selected = kNone;
+        session_->select(kNone);
         session_->request.inspect.clear();
     }
 }

@@ -7,8 +7,10 @@
 #include "layout.h"
 #include "messages.h"
 #include "options.h"
+#include "save_dialog.h"
 #include "session.h"
 #include "user_interface.h"
+#include "window_input.h"
 
 namespace tyndall::editor {
 
@@ -25,11 +27,15 @@ private:
     Outcome loop();
     /// Waits for something to happen, if nothing is to be done meanwhile.
     void waitForEvents();
+    /// All input that waits, in order, and then one frame of the interface that is seen.
     void drawInterface();
+    void interfaceFrame(ivec2 size);
+    void drawPanes();
+    /// Says that a frame is being made before it is, and that it is done once it is.
+    void announceRendering();
     void drawMenu();
     void drawFileMenu();
     void drawEditMenu();
-    void drawSaveDialog();
     void handleKeys();
     void screenshot(const char* ending);
     void copyCommandLine();
@@ -44,12 +50,13 @@ private:
     Layout layout_; // outlives the interface, which writes it down at its end
     std::unique_ptr<UserInterface> interface_;
 
-    bool eventArrived_ = false; // set by the window's callbacks
-    int interfaceFrames_ = 3;   // still to draw: ImGui needs a few to settle after an event
+    WindowInput input_;
+    double lastDrawn_ = 0;    // seconds of GLFW's clock
+    int interfaceFrames_ = 3; // still to draw: ImGui needs a few to settle after an event
     int beforeFirstPicture_ = 3;
     bool timingsKnown_ = true; // of the last picture
-    bool quit_ = false, askToQuit_ = false, openSaveDialog_ = false;
-    std::string savePath_, title_;
+    SaveDialog saveDialog_;
+    std::string title_;
 };
 
 } // namespace tyndall::editor

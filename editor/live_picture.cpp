@@ -9,15 +9,21 @@
 #include "gl/screen.h"
 
 namespace tyndall::editor {
+namespace {
+
+/// Is it a setting ("KEY=VALUE") of the last pass, which turns light into what is displayed?
+bool isTone(const std::string& setting) { return setting.starts_with("post."); }
+
+} // namespace
 
 std::string LivePicture::keyOf(Renderer& renderer, const Scene& scene,
                                const FrameRequest& request) {
     const SceneVersions& v = scene.versions;
-    std::string key = fmt::format(
-        "{} {} {} {} {} {} {} {} {} {} | {}x{} {} {} {} {} {} {} | ", v.structure, v.transforms,
-        v.meshes, v.materials, v.textures, v.lights, v.media, v.cameras, v.environment, scene.ev100,
-        request.width, request.height, request.cameraNode, scene.activeCamera, request.terms,
-        request.time, request.seed, request.converge);
+    std::string key = fmt::format("{} {} {} {} {} {} {} {} {} | {}x{} {} {} {} {} {} {} | ",
+                                  v.structure, v.transforms, v.meshes, v.materials, v.textures,
+                                  v.lights, v.media, v.cameras, v.environment, request.width,
+                                  request.height, request.cameraNode, scene.activeCamera,
+                                  request.terms, request.time, request.seed, request.converge);
     if (request.pose) {
         for (int c = 0; c < 4; ++c)
             for (int r = 0; r < 4; ++r)
@@ -25,16 +31,39 @@ std::string LivePicture::keyOf(Renderer& renderer, const Scene& scene,
         key += fmt::format("{} {} ", request.pose->camera.yfov, request.pose->camera.ymag);
     }
     key += request.inspect;
-    for (const std::string& setting : renderer.settings().differences()) key += " " + setting;
+    for (const std::string& setting : renderer.settings().differences())
+        if (!isTone(setting)) key += " " + setting;
+    return key;
+}
+
+std::string LivePicture::toneKeyOf(Renderer& renderer, const Scene& scene) {
+    std::string key = fmt::format("{}", scene.ev100);
+    for (const std::string& setting : renderer.settings().differences())
+        if (isTone(setting)) key += " " + setting;
     return key;
 }
 
 bool LivePicture::update(Renderer& renderer, const Scene& scene, FrameRequest request) {
-    std::string key = keyOf(renderer, scene, request);
-    const bool changed = key != key_;
-    if (!changed && atRest_) return false;
+    std::string key = keyOf(renderer, scene, request), toneKey = toneKeyOf(renderer, scene);
+    const bool changed = key != key_, toneChanged = toneKey != toneKey_;
+    if (!changed && !toneChanged && atRest_) return false;
+    toneKey_ = std::move(toneKey);
+    // At once, also while frames are averaged: the average goes on afterwards.
+    if (!changed && toneChanged && showTone(renderer, request)) return true;
     if (changed) averaged_ = 0;
     key_ = std::move(key);
+    return renderFrame(renderer, std::move(request));
+}
+
+/// The last frame with another exposure or tone curve. False where that takes a whole frame.
+bool LivePicture::showTone(Renderer& renderer, const FrameRequest& request) {
+    const Result<bool> done = renderer.toneMapAgain();
+    if (!done.ok() || !*done) return false;
+    gl::copyPicture(renderer.displayTexture(), request.width, request.height, texture_);
+    return true;
+}
+
+bool LivePicture::renderFrame(Renderer& renderer, FrameRequest request) {
     request.frameIndex = request.converge ? averaged_ : 0;
     request.restart = request.converge && averaged_ == 0;
     ++frames_;

@@ -15,9 +15,15 @@ namespace tyndall::editor {
 
 class LivePicture {
 public:
-    /// Renders a frame if one is due. `frameIndex` of the request is chosen here: 0 for still pictures, counting when they are
-    /// averaged, as `tyndall capture` does. True when there is a new picture.
+    /// Renders a frame if one is due, or the tone-mapping pass alone where only exposure or tone curve changed. `frameIndex` of
+    /// the request is chosen here: 0 for still pictures, counting when they are averaged, as `tyndall capture` does. True when
+    /// there is a new picture.
     bool update(Renderer& renderer, const Scene& scene, FrameRequest request);
+    /// Would update() render a frame? A new exposure is not one.
+    [[nodiscard]] bool isDue(Renderer& renderer, const Scene& scene,
+                             const FrameRequest& request) const {
+        return !atRest_ || keyOf(renderer, scene, request) != key_;
+    }
     /// Renders again though nothing changed, such as after shaders were reloaded.
     void invalidate() { key_.clear(); }
 
@@ -40,8 +46,12 @@ public:
 private:
     [[nodiscard]] static std::string keyOf(Renderer& renderer, const Scene& scene,
                                            const FrameRequest& request);
+    [[nodiscard]] static std::string toneKeyOf(Renderer& renderer, const Scene& scene);
+    bool renderFrame(Renderer& renderer, FrameRequest request);
+    bool showTone(Renderer& renderer, const FrameRequest& request);
     gl::Texture texture_;
-    std::string key_, failure_;
+    std::string key_, toneKey_; // of what the picture shows: its light, and how that is displayed
+    std::string failure_;
     std::optional<FrameResult> result_;
     uint64_t frames_ = 0;
     uint32_t averaged_ = 0;

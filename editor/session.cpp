@@ -5,6 +5,7 @@
 #include "app/program.h"
 #include "core/log.h"
 #include "scene/scene_writer.h"
+#include "setting_options.h"
 
 namespace tyndall::editor {
 namespace {
@@ -34,18 +35,6 @@ Bounds boundsBelow(const Scene& scene, int root) {
 }
 
 } // namespace
-
-std::string shellWord(const std::string& text) {
-    const bool plain =
-        !text.empty() &&
-        text.find_first_not_of(
-            "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_-+=./,:@%") ==
-            std::string::npos;
-    if (plain) return text;
-    std::string word = "'";
-    for (const char c : text) word += c == '\'' ? std::string("'\\''") : std::string(1, c);
-    return word + "'";
-}
 
 Session::Session(RenderSession& rendering, Messages& messages, const EditorOptions& options)
     : request(rendering.request()), rendering_(rendering), scene_(rendering.scene()),
@@ -83,7 +72,7 @@ const Camera& Session::lens() const {
 }
 
 void Session::frameSelection() {
-    Bounds bounds = selected != kNone ? boundsBelow(scene_, selected) : scene_.worldBounds();
+    Bounds bounds = selected_ != kNone ? boundsBelow(scene_, selected_) : scene_.worldBounds();
     if (bounds.empty()) return;
     if (glm::length(bounds.extent()) == 0) { // a light: some room around it
         const dvec3 room(0.05 * sceneSize());
@@ -92,12 +81,21 @@ void Session::frameSelection() {
     freeCamera().frame(bounds, yfov_.value_or(lens().yfov), double(request.width) / request.height);
 }
 
-bool Session::update() {
+void Session::placeCamera() {
     request.pose.reset();
     if (free_) {
         request.pose = CameraPose{lens(), camera_.worldFromCamera()};
         if (yfov_) request.pose->camera.yfov = *yfov_;
     }
+}
+
+bool Session::pictureIsDue() {
+    placeCamera();
+    return picture_.isDue(renderer_, scene_, request);
+}
+
+bool Session::update() {
+    placeCamera();
     return picture_.update(renderer_, scene_, request);
 }
 
@@ -119,26 +117,16 @@ void Session::saveExr(const std::string& path) {
     written.ok() ? log::info("wrote " + path) : log::error(written.message());
 }
 
-void Session::saveScene(const std::string& path) {
-    const Result<void> written = writeSceneFile(scene_, path);
-    if (!written.ok()) return log::error(written.message());
+Result<void> Session::saveScene(const std::string& path) {
+    Result<void> written = writeSceneFile(scene_, path);
+    if (!written.ok()) {
+        log::error(written.message());
+        return written;
+    }
     sceneFile_ = path;
     history_.markSaved();
     log::info("wrote " + path);
-}
-
-/// Those that are not as the scene file has them, as options.
-std::string Session::changedSettings() const {
-    std::string options;
-    for (const SettingsGroup& group : renderer_.settings().groups())
-        for (const SettingDesc& field : group.fields) {
-            const std::string key = field.key, text = settingToText(field, group.values);
-            if (key.starts_with("inspect.") || rendering_.settingsOfScene().at(key) == text)
-                continue;
-            options += key == kTechniqueSetting ? " --gi " + shellWord(text)
-                                                : " --set " + shellWord(key + "=" + text);
-        }
-    return options;
+    return {};
 }
 
 std::string Session::captureLine() const {
@@ -154,7 +142,9 @@ std::string Session::captureLine() const {
     if (request.terms != kAllTerms) line += " --terms " + termNames(request.terms);
     for (const std::string& plugin : options_.render.plugins)
         line += " --plugin " + shellWord(plugin);
-    line += changedSettings();
+    for (const std::string& option :
+         settingOptions(renderer_.settings(), rendering_.settingsOfScene(), kTechniqueSetting))
+        line += " " + option;
     if (request.time != 0) line += fmt::format(" --time {}", request.time);
     if (request.seed != 0) line += fmt::format(" --seed {}", request.seed);
     if (request.converge) line += " --converge";

@@ -9,6 +9,8 @@
 #include "live_picture.h"
 #include "messages.h"
 #include "options.h"
+#include "rotation_angles.h"
+#include "widgets.h"
 
 namespace tyndall::editor {
 
@@ -30,7 +32,9 @@ public:
     void edit(CommandPtr command) { history_.perform(std::move(command)); }
 
     // --- what is looked at ---
-    int selected = kNone; // node
+    [[nodiscard]] int selected() const { return selected_; } // node
+    /// From the next frame of the interface on: a field that is left by this click still belongs to the node selected now.
+    void select(int node) { nextSelected_ = node; }
     FrameRequest request; // size, terms, resource shown; the pose is filled in by update()
     int reduction = 1;    // the picture has this part of the pane's pixels along each side
     /// Looks through a camera of the scene again.
@@ -43,6 +47,10 @@ public:
     /// Brings the selection, or else the scene, into the picture.
     void frameSelection();
 
+    /// Before the panes of a frame of the interface are drawn.
+    void beginPanes() { selected_ = nextSelected_; }
+    /// Is a frame to be rendered?
+    [[nodiscard]] bool pictureIsDue();
     /// Renders if something changed; true when there is a new picture.
     bool update();
 
@@ -50,12 +58,15 @@ public:
     struct PaneState {
         std::string nodeFilter, resourceFilter, settingFilter;
         size_t messagesSeen = 0;
+        TypedNumber typed;
+        RotationAngles angles;
+        bool rendering = false; // said in the toolbar: a frame is being made
     } panes;
 
     // --- what leaves the editor; each says in the log what it did ---
     void saveScreenshot(const std::string& path);
     void saveExr(const std::string& path);
-    void saveScene(const std::string& path);
+    Result<void> saveScene(const std::string& path);
     /// The `tyndall capture` line that makes the same picture.
     [[nodiscard]] std::string captureLine() const;
 
@@ -64,7 +75,7 @@ private:
         return request.cameraNode != kNone ? request.cameraNode : scene_.activeCamera;
     }
     [[nodiscard]] double sceneSize() const;
-    [[nodiscard]] std::string changedSettings() const;
+    void placeCamera();
 
     RenderSession& rendering_;
     Scene& scene_;       // of rendering_
@@ -76,10 +87,8 @@ private:
     LivePicture picture_;
     CameraController camera_;
     bool free_ = false;
+    int selected_ = kNone, nextSelected_ = kNone;
     std::optional<double> yfov_; // of --pose
 };
-
-/// The text as one word of a shell's command line.
-std::string shellWord(const std::string& text);
 
 } // namespace tyndall::editor

@@ -15,6 +15,7 @@ namespace tyndall::editor {
 namespace fs = std::filesystem;
 namespace {
 
+constexpr double kMoment = 1.0 / 60; // seconds
 constexpr float kFontPixels = 15;
 constexpr const char* kFont = "/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf";
 // Latin, Greek and what formulas and units use; pairs of first and last, ended by zero.
@@ -91,6 +92,8 @@ UserInterface::UserInterface(gl::Window& window, Layout& layout, bool keepLayout
     ImGui::CreateContext();
     ImGuiIO& io = ImGui::GetIO();
     io.IniFilename = layoutFile_.empty() ? nullptr : layoutFile_.c_str();
+    io.ConfigInputTextCursorBlink =
+        false; // or the window could not rest while the cursor stands in a field
     layout.remember();
     float scale = 1, vertical = 1;
     glfwGetWindowContentScale(window.handle(), &scale, &vertical);
@@ -104,7 +107,7 @@ UserInterface::UserInterface(gl::Window& window, Layout& layout, bool keepLayout
         config.SizePixels = 13 * scale; // of the font inside ImGui, which has Latin letters only
         io.Fonts->AddFontDefault(&config);
     }
-    ImGui_ImplGlfw_InitForOpenGL(window.handle(), true);
+    ImGui_ImplGlfw_InitForOpenGL(window.handle(), false); // events come from the queue
     ImGui_ImplOpenGL3_Init("#version 450 core");
 }
 
@@ -114,11 +117,21 @@ UserInterface::~UserInterface() {
     ImGui::DestroyContext();
 }
 
-void UserInterface::beginFrame() {
+void UserInterface::beginFrame(InputQueue& queue) {
     ImGui_ImplOpenGL3_NewFrame();
     ImGui_ImplGlfw_NewFrame();
+    const std::vector<InputEvent> events = queue.takeFrame();
+    const double now = glfwGetTime();
+    // GLFW does not say when an event was made. Of several that waited each takes a moment, so that a key moves the camera however short it was.
+    const bool together = moreWaited_ || !queue.empty();
+    const double passed = std::max(now - lastFrame_, together ? kMoment : 0);
+    moreWaited_ = !queue.empty();
+    lastFrame_ = now;
+    feed_.apply(events, passed);
     ImGui::NewFrame();
 }
+
+void UserInterface::endFrameUnseen() { ImGui::EndFrame(); }
 
 void UserInterface::endFrame(ivec2 framebufferSize) {
     ImGui::Render();

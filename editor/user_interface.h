@@ -5,6 +5,7 @@
 
 #include "core/math.h"
 #include "gl/window.h"
+#include "input_feed.h"
 #include "layout.h"
 
 namespace tyndall::editor {
@@ -17,11 +18,17 @@ public:
     UserInterface(const UserInterface&) = delete;
     UserInterface& operator=(const UserInterface&) = delete;
 
-    void beginFrame();
+    /// Takes one frame's events from the queue.
+    void beginFrame(InputQueue& queue);
     /// Draws over a cleared window of this many pixels.
     void endFrame(ivec2 framebufferSize);
+    /// Instead of endFrame(), where more input waits: nothing is drawn.
+    void endFrameUnseen();
 
 private:
+    InputFeed feed_;
+    double lastFrame_ = 0; // seconds of GLFW's clock
+    bool moreWaited_ = false;
     std::string layoutFile_; // ImGui keeps a pointer to it
 };
 

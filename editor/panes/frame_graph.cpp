@@ -46,22 +46,25 @@ void drawResource(Session& session, const fg::CompiledGraph& graph, size_t index
 
 /// How the resource is shown: the settings whose keys begin with "inspect.".
 void drawInspectSettings(Session& session) {
+    bool first = true;
+    const float width = ImGui::GetFontSize() * 5;
     for (const SettingsGroup& group : session.settings().groups())
         for (const SettingDesc& field : group.fields) {
             if (!std::string_view(field.key).starts_with("inspect.")) continue;
+            if (!first) flow(ImGui::CalcTextSize(field.name).x + ImGui::GetFontSize() + width);
+            first = false;
             ImGui::PushID(field.key);
+            ImGui::AlignTextToFramePadding();
             text(field.name);
             tooltip(field.help);
             ImGui::SameLine();
             std::string changed;
-            if (settingWidget(field, group.values, ImGui::GetFontSize() * 5, changed))
+            if (settingWidget(session.panes.typed, field, group.values, width, changed))
                 session.edit(changeSettings(session.settings(), fmt::format("set {}", field.key),
                                             {{field.key, changed}}));
             tooltip(field.help);
             ImGui::PopID();
-            ImGui::SameLine(0, ImGui::GetFontSize());
         }
-    if (ImGui::SmallButton("back to the picture")) session.request.inspect.clear();
 }
 
 void drawResources(Session& session) {

@@ -10,8 +10,6 @@
 namespace tyndall::editor {
 namespace {
 
-constexpr double kDegrees = 180 / kPi;
-
 void label(const char* name, const std::string& help) {
     ImGui::TableNextRow();
     ImGui::TableNextColumn();
@@ -32,33 +30,42 @@ bool beginFields(const char* id) {
     return true;
 }
 
-bool dragPoint(const char* name, const std::string& help, dvec3& value, float speed,
-               const char* format) {
+/// Of a position, an angle or a scale: shown with so many decimals.
+bool dragPoint(Session& session, const char* name, const std::string& help, dvec3& value,
+               float speed, int decimals) {
     label(name, help);
-    const bool changed = ImGui::DragScalarN("##value", ImGuiDataType_Double, glm::value_ptr(value),
-                                            3, speed, nullptr, nullptr, format);
+    dvec3 shown = value;
+    for (int axis = 0; axis < 3; ++axis) shown[axis] = withoutNegativeZero(value[axis], decimals);
+    const dvec3 before = shown;
+    const std::string format = fmt::format("%.{}f", decimals);
+    const bool changed = dragNumbers(session.panes.typed, glm::value_ptr(shown), 3,
+                                     {.speed = speed, .format = format.c_str()});
+    for (int axis = 0; axis < 3; ++axis)
+        if (shown[axis] != before[axis]) value[axis] = shown[axis];
     ImGui::PopID();
     return changed;
 }
 
+constexpr ImGuiSliderFlags kByRatio =
+    ImGuiSliderFlags_AlwaysClamp | ImGuiSliderFlags_NoRoundToFormat;
+
 /// Dragged by ratio, since lights and media span decades.
-bool dragNumber(const char* name, const std::string& help, float& value, float least, float most,
-                const char* format) {
+bool dragNumber(Session& session, const char* name, const std::string& help, float& value,
+                double least, double most, const char* format) {
     label(name, help);
     const float speed = std::max(std::abs(value), 1e-4f) / 100;
     const bool changed =
-        ImGui::DragFloat("##value", &value, speed, least, most, format,
-                         ImGuiSliderFlags_AlwaysClamp | ImGuiSliderFlags_NoRoundToFormat);
+        dragNumbers(session.panes.typed, &value, 1, {speed, least, most, format, kByRatio});
     ImGui::PopID();
     return changed;
 }
 
-bool dragColor(const char* name, const std::string& help, vec3& value, const char* format) {
+bool dragColor(Session& session, const char* name, const std::string& help, vec3& value,
+               const char* format) {
     label(name, help);
     const float speed = std::max(maximumOf(value), 1e-3f) / 100;
-    const bool changed =
-        ImGui::DragFloat3("##value", glm::value_ptr(value), speed, 0, 1e9f, format,
-                          ImGuiSliderFlags_AlwaysClamp | ImGuiSliderFlags_NoRoundToFormat);
+    const bool changed = dragNumbers(session.panes.typed, glm::value_ptr(value), 3,
+                                     {speed, 0, 1e9, format, kByRatio});
     ImGui::PopID();
     return changed;
 }
@@ -73,17 +80,17 @@ void drawTransform(Session& session, int index) {
     }
     if (!beginFields("transform")) return;
     dvec3 translation = node.translation, scale = node.scale;
-    dvec3 turned = glm::eulerAngles(node.rotation) * kDegrees;
+    dvec3 turned = session.panes.angles.of(index, node.rotation);
     const double size =
         std::max({std::abs(translation.x), std::abs(translation.y), std::abs(translation.z), 1.0});
-    bool changed = dragPoint("Position", "Metres, in the space of the node above", translation,
-                             float(size * 0.005), "%.3f");
+    bool changed = dragPoint(session, "Position", "Metres, in the space of the node above",
+                             translation, float(size * 0.005), 3);
     dquat rotation = node.rotation;
-    if (dragPoint("Rotation", "Degrees about X, then Y, then Z", turned, 0.25f, "%.2f")) {
-        rotation = glm::normalize(dquat(turned / kDegrees));
+    if (dragPoint(session, "Rotation", "Degrees about X, then Y, then Z", turned, 0.25f, 2)) {
+        rotation = session.panes.angles.set(index, turned);
         changed = true;
     }
-    changed |= dragPoint("Scale", "Factor along each axis", scale, 0.005f, "%.3f");
+    changed |= dragPoint(session, "Scale", "Factor along each axis", scale, 0.005f, 3);
     if (changed)
         session.edit(changeTransform(session.scene(), index, translation, rotation, scale));
     ImGui::EndTable();
@@ -98,14 +105,16 @@ void drawLight(Session& session, int index) {
     if (!beginFields("light")) return;
     bool changed = false;
     if (light.type == LightType::Rect) {
-        changed |= dragColor("Radiance", "Nits that leave it, red, green and blue", light.radiance,
-                             "%.4g");
+        changed |= dragColor(session, "Radiance", "Nits that leave it, red, green and blue",
+                             light.radiance, "%.4g");
     } else {
-        changed |= dragColor("Colour", "Linear, multiplies the intensity", light.color, "%.3f");
+        changed |=
+            dragColor(session, "Colour", "Linear, multiplies the intensity", light.color, "%.3f");
         const bool sun = light.type == LightType::Directional;
-        changed |= dragNumber("Intensity", sun ? "Lux on a surface that faces it" : "Candela",
-                              light.intensity, 0, 1e12f, sun ? "%.4g lx" : "%.4g cd");
-        changed |= dragNumber("Radius",
+        changed |=
+            dragNumber(session, "Intensity", sun ? "Lux on a surface that faces it" : "Candela",
+                       light.intensity, 0, 1e12f, sun ? "%.4g lx" : "%.4g cd");
+        changed |= dragNumber(session, "Radius",
                               sun ? "Angular radius, for soft shadows"
                                   : "Of the glowing sphere, for soft shadows",
                               light.radius, 0, sun ? 1.5f : 1e6f, sun ? "%.4f rad" : "%.3f m");
@@ -128,16 +137,20 @@ void drawMedium(Session& session, int index) {
         coloredText(kGrey, medium.file +
                                (medium.gridName.empty() ? "" : ", grid '" + medium.gridName + "'"));
     if (!beginFields("medium")) return;
-    bool changed = dragColor("Scattering", "Per metre, red, green and blue; a grid multiplies it",
-                             medium.scattering, "%.4g");
-    changed |= dragColor("Absorption", "Per metre, red, green and blue; a grid multiplies it",
-                         medium.absorption, "%.4g");
+    bool changed =
+        dragColor(session, "Scattering", "Per metre, red, green and blue; a grid multiplies it",
+                  medium.scattering, "%.4g");
+    changed |=
+        dragColor(session, "Absorption", "Per metre, red, green and blue; a grid multiplies it",
+                  medium.absorption, "%.4g");
     label("Anisotropy",
           "Mean cosine of scattering: positive goes on forwards, negative is thrown back");
-    changed |= ImGui::SliderFloat("##value", &medium.anisotropy, -0.95f, 0.95f, "%.2f",
-                                  ImGuiSliderFlags_AlwaysClamp);
+    const float before = medium.anisotropy;
+    const bool slid = ImGui::SliderFloat("##value", &medium.anisotropy, -0.95f, 0.95f, "%.2f",
+                                         ImGuiSliderFlags_AlwaysClamp);
+    changed |= takeNumber(session.panes.typed, slid, before, medium.anisotropy);
     ImGui::PopID();
-    changed |= dragColor("Emission", "Nits per metre", medium.emission, "%.4g");
+    changed |= dragColor(session, "Emission", "Nits per metre", medium.emission, "%.4g");
     ImGui::EndTable();
     if (changed) session.edit(changeMedium(session.scene(), index, medium));
 }
@@ -145,18 +158,19 @@ void drawMedium(Session& session, int index) {
 } // namespace
 
 void drawInspector(Session& session) {
-    if (session.selected == kNone) return coloredText(kGrey, "Click a node to see what it holds.");
-    const Node& node = session.scene().nodes[size_t(session.selected)];
+    if (session.selected() == kNone)
+        return coloredText(kGrey, "Click a node to see what it holds.");
+    const Node& node = session.scene().nodes[size_t(session.selected())];
     text(node.name.empty() ? "(no name)" : node.name);
     ImGui::SameLine();
     if (ImGui::SmallButton("Frame")) session.frameSelection();
     tooltip("Bring it into the picture (F)");
     if (node.camera != kNone) {
         ImGui::SameLine();
-        if (ImGui::SmallButton("Look through")) session.lookThrough(session.selected);
+        if (ImGui::SmallButton("Look through")) session.lookThrough(session.selected());
     }
-    ImGui::PushID(session.selected);
-    drawTransform(session, session.selected);
+    ImGui::PushID(session.selected());
+    drawTransform(session, session.selected());
     if (node.light != kNone) drawLight(session, node.light);
     if (node.medium != kNone) drawMedium(session, node.medium);
     if (!node.meshes.empty()) {

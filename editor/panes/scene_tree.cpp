@@ -59,12 +59,12 @@ private:
         ImGuiTreeNodeFlags flags =
             ImGuiTreeNodeFlags_OpenOnArrow | ImGuiTreeNodeFlags_SpanAvailWidth;
         if (leaf) flags |= ImGuiTreeNodeFlags_Leaf | ImGuiTreeNodeFlags_NoTreePushOnOpen;
-        if (session_.selected == index) flags |= ImGuiTreeNodeFlags_Selected;
+        if (session_.selected() == index) flags |= ImGuiTreeNodeFlags_Selected;
         if (!node.visible) ImGui::PushStyleColor(ImGuiCol_Text, kGrey);
         const bool open = ImGui::TreeNodeEx("##node", flags, "%s",
                                             node.name.empty() ? "(no name)" : node.name.c_str());
         if (!node.visible) ImGui::PopStyleColor();
-        if (ImGui::IsItemClicked() && !ImGui::IsItemToggledOpen()) session_.selected = index;
+        if (ImGui::IsItemClicked() && !ImGui::IsItemToggledOpen()) session_.select(index);
         ImGui::TableNextColumn();
         coloredText(kGrey, kindOf(node));
         ImGui::PopID();

@@ -11,14 +11,6 @@
 namespace tyndall::editor {
 namespace {
 
-std::string helpText(const SettingDesc& field) {
-    std::string help = fmt::format("{}\n{}", field.help, field.key);
-    if (field.type == SettingType::Int || field.type == SettingType::Float)
-        help += fmt::format("\n{:g} to {:g}{}{}", field.minimum, field.maximum,
-                            *field.unit ? " " : "", field.unit);
-    return help + "\nDefault: " + settingDefaultText(field);
-}
-
 /// Settings whose keys begin with the same word, whoever registered them.
 struct Room {
     std::string title; // "Media" of "media.march.steps"
@@ -43,31 +35,11 @@ std::vector<Room> roomsOf(const SettingsRegistry& settings, const std::string& f
 }
 
 void drawSetting(Session& session, const SettingDesc& field, const void* values) {
-    ImGui::TableNextRow();
-    ImGui::TableNextColumn();
-    ImGui::PushID(field.key);
-    ImGui::AlignTextToFramePadding();
-    const std::string now = settingToText(field, values), standard = settingDefaultText(field);
-    const bool changedBefore = now != standard;
-    changedBefore ? coloredText(kWarn, field.name) : text(field.name);
-    tooltip(helpText(field));
-    ImGui::TableNextColumn();
-    const float button = ImGui::GetFrameHeight() + ImGui::GetStyle().ItemInnerSpacing.x;
-    std::string changed;
-    if (settingWidget(field, values, ImGui::GetContentRegionAvail().x - button, changed) &&
-        changed != now)
-        session.edit(changeSettings(session.settings(), fmt::format("set {}", field.key),
-                                    {{field.key, changed}}));
-    tooltip(helpText(field));
-    if (changedBefore) {
-        ImGui::SameLine(ImGui::GetCursorPosX() + ImGui::GetContentRegionAvail().x -
-                        ImGui::GetFrameHeight());
-        if (ImGui::Button("x", {ImGui::GetFrameHeight(), 0}))
-            session.edit(changeSettings(session.settings(), fmt::format("reset {}", field.key),
-                                        {{field.key, standard}}));
-        tooltip("Back to its default: " + standard);
-    }
-    ImGui::PopID();
+    const std::optional<SettingEdit> edit = settingRow(session.panes.typed, field, values);
+    if (edit)
+        session.edit(changeSettings(session.settings(),
+                                    fmt::format("{} {}", edit->reset ? "reset" : "set", field.key),
+                                    {{field.key, edit->text}}));
 }
 
 void drawPresets(Session& session) {
@@ -101,7 +73,7 @@ void drawSettings(Session& session) {
     for (const Room& room : roomsOf(session.settings(), filter)) {
         if (!filter.empty()) ImGui::SetNextItemOpen(true);
         if (!ImGui::CollapsingHeader(room.title.c_str(), ImGuiTreeNodeFlags_DefaultOpen)) continue;
-        if (!ImGui::BeginTable(room.title.c_str(), 2, ImGuiTableFlags_SizingStretchSame)) continue;
+        if (!beginSettingRows(room.title.c_str())) continue;
         for (const auto& [field, values] : room.fields) drawSetting(session, *field, values);
         ImGui::EndTable();
     }

@@ -38,48 +38,72 @@ std::string stateText(Session& session) {
     const LivePicture& picture = session.picture();
     if (!picture.result()) return "";
     const FrameResult& result = *picture.result();
-    if (!session.request.converge) return "still: drawing stopped";
+    if (!picture.failure().empty() && !session.panes.rendering)
+        return "the last frame failed: drawing stopped";
+    if (!session.request.converge)
+        return session.panes.rendering ? "rendering" : "still: drawing stopped";
     const std::string frames = fmt::format("{} frame{}", result.accumulatedFrames,
                                            result.accumulatedFrames == 1 ? "" : "s");
-    if (result.converged) return fmt::format("converged after {}: drawing stopped", frames);
+    if (result.converged && !session.panes.rendering)
+        return fmt::format("converged after {}: drawing stopped", frames);
     if (result.accumulatedFrames < 2 || !std::isfinite(result.estimatedError))
         return "averaging: " + frames;
     return fmt::format("averaging: {}, relmse {:.1e}", frames, result.estimatedError);
 }
 
-void drawToolbar(Session& session) {
-    drawCameraChoice(session);
-    ImGui::SameLine();
-    ImGui::Checkbox("Converge", &session.request.converge);
-    tooltip(
-        "Average frames with other samples until edges and noise are gone, then stop; like 'tyndall capture --converge'.");
-    ImGui::SameLine();
-    if (!session.options().fixedSize) {
-        static constexpr const char* kResolutions[] = {"all pixels", "1/2", "1/4"};
-        int index = session.reduction == 1 ? 0 : session.reduction == 2 ? 1 : 2;
-        ImGui::SetNextItemWidth(ImGui::GetFontSize() * 6);
-        if (ImGui::Combo("##resolution", &index, kResolutions, 3)) session.reduction = 1 << index;
-        tooltip(
-            "Pixels of the picture along each side, as a part of what the pane has: fewer are faster.");
-        ImGui::SameLine();
-    }
+void drawExposure(Session& session) {
     float ev100 = session.scene().ev100;
     ImGui::SetNextItemWidth(ImGui::GetFontSize() * 6);
-    if (ImGui::DragFloat("##ev", &ev100, 0.02f, -20, 30, "EV %.2f"))
+    if (dragNumbers(session.panes.typed, &ev100, 1, {0.02f, -20, 30, "EV %.2f"}))
         session.edit(changeExposure(session.scene(), ev100));
     tooltip("Exposure value at ISO 100 (stops); higher is darker.");
-    if (!session.request.inspect.empty()) {
-        ImGui::SameLine();
-        coloredText(kWarn, "showing " + session.request.inspect);
-        ImGui::SameLine();
-        if (ImGui::SmallButton("back to the picture")) session.request.inspect.clear();
-    }
+}
+
+void drawResolution(Session& session) {
+    static constexpr const char* kResolutions[] = {"all pixels", "1/2", "1/4"};
+    int index = session.reduction == 1 ? 0 : session.reduction == 2 ? 1 : 2;
+    ImGui::SetNextItemWidth(ImGui::GetFontSize() * 6);
+    if (ImGui::Combo("##resolution", &index, kResolutions, 3)) session.reduction = 1 << index;
+    tooltip(
+        "Pixels of the picture along each side, as a part of what the pane has: fewer are faster.");
+}
+
+/// At the right end, in a line of its own where there is no room beside the rest.
+void drawState(Session& session) {
     const std::string state = fmt::format("{} x {}   {}", session.picture().width(),
                                           session.picture().height(), stateText(session));
     const float width = ImGui::CalcTextSize(state.c_str()).x;
-    ImGui::SameLine(std::max(ImGui::GetCursorPosX() + ImGui::GetFontSize(),
-                             ImGui::GetWindowContentRegionMax().x - width));
-    coloredText(session.picture().converged() ? kGood : kGrey, state);
+    flow(width);
+    ImGui::SetCursorPosX(
+        std::max(ImGui::GetCursorPosX(), ImGui::GetWindowContentRegionMax().x - width));
+    ImGui::AlignTextToFramePadding();
+    const bool done = session.picture().converged() && !session.panes.rendering;
+    coloredText(done ? kGood : kGrey, state);
+}
+
+void drawToolbar(Session& session) {
+    const float em = ImGui::GetFontSize();
+    drawCameraChoice(session);
+    flow(ImGui::GetFrameHeight() + ImGui::CalcTextSize(" Converge").x);
+    ImGui::Checkbox("Converge", &session.request.converge);
+    tooltip(
+        "Average frames with other samples until edges and noise are gone, then stop; like 'tyndall capture --converge'.");
+    if (!session.options().fixedSize) {
+        flow(6 * em);
+        drawResolution(session);
+    }
+    flow(6 * em);
+    drawExposure(session);
+    if (!session.request.inspect.empty()) {
+        const std::string showing = "showing " + session.request.inspect;
+        const char* back = "back to the picture";
+        flow(ImGui::CalcTextSize((showing + back).c_str()).x + 2 * em);
+        ImGui::AlignTextToFramePadding();
+        coloredText(kWarn, showing);
+        ImGui::SameLine();
+        if (ImGui::Button(back)) session.request.inspect.clear();
+    }
+    drawState(session);
 }
 
 /// Metres that one pixel spans at the pivot.
@@ -91,9 +115,12 @@ double metresPerPixel(const Session& session, const CameraController& camera, fl
     return 2 * halfHeight / double(std::max(height, 1.0f));
 }
 
+/// Was the key down since the frame before? One that was released now was.
+bool wasDown(int key) { return ImGui::GetIO().KeysDownDurationPrev[key] >= 0; }
+
 void flyByKeys(CameraController& camera) {
     const auto axis = [](int forth, int back) {
-        return double(ImGui::IsKeyDown(forth)) - double(ImGui::IsKeyDown(back));
+        return double(wasDown(forth)) - double(wasDown(back));
     };
     const dvec3 axes(axis(GLFW_KEY_D, GLFW_KEY_A), axis(GLFW_KEY_E, GLFW_KEY_Q),
                      axis(GLFW_KEY_W, GLFW_KEY_S));
@@ -113,7 +140,7 @@ void moveCamera(Session& session, float height) {
         if (io.MouseWheel != 0) session.freeCamera().changeSpeed(double(io.MouseWheel));
         for (const int key :
              {GLFW_KEY_W, GLFW_KEY_A, GLFW_KEY_S, GLFW_KEY_D, GLFW_KEY_Q, GLFW_KEY_E})
-            if (ImGui::IsKeyDown(key)) return flyByKeys(session.freeCamera());
+            if (wasDown(key)) return flyByKeys(session.freeCamera());
         return;
     }
     if (active && ImGui::IsMouseDown(ImGuiMouseButton_Left) && io.KeyAlt && anyMove)

@@ -176,11 +176,11 @@ FrameImages recordFrame(fg::FrameGraph& graph, const FrameParts& parts, const Fr
     if (order.averagedFrame > 0) addAverages(graph, order, images);
 
     // A picture for people.
-    images.beauty = addPostEffects(graph, parts, order, inputs, images.beauty);
-    const Display display =
+    const fg::TextureHandle light = images.beauty;
+    images.beauty = addPostEffects(graph, parts, order, inputs, light);
+    images.beautyMayDependOnExposure = images.beauty != light;
+    images.display =
         addTonemapPass(graph, images.beauty, order.ev100, parts.postSettings, order.view.data.seed);
-    images.display = display.image;
-    images.invalidPixels = display.invalidPixels;
     return images;
 }
 

@@ -58,9 +58,11 @@ struct FrameImages {
     TermImages terms;                // averaged where the frame is
     fg::TextureHandle
         beauty; // their sum; averaged where the frame is, alpha then holds squared deviations
-    fg::TextureHandle display; // RGBA8
-    fg::BufferHandle invalidPixels;
     fg::BufferHandle firstInvalid; // see shaders/post/sum.comp
+    Display display;
+    /// Is a debug view or a post effect in the linear picture? These are given the exposure (plugin::FrameInputs::whiteNits), by which
+    /// the LPV's slice and the crosses of virtual lights are made as bright as can be seen.
+    bool beautyMayDependOnExposure = false;
     std::vector<StatisticsBuffer> statistics;
 };
 

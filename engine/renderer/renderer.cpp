@@ -216,9 +216,10 @@ fg::FrameGraph& Renderer::Impl::record(const FrameRequest& request) {
 /// All that may be read back after the frame.
 void Renderer::Impl::markOutputs(fg::FrameGraph& graph, const FrameRequest& request) const {
     for (fg::TextureHandle output :
-         {images.beauty, images.display, inspected, images.gbuffer.depth, images.gbuffer.normal,
-          images.gbuffer.base, images.transmittance})
+         {images.beauty, images.display.image, inspected, images.gbuffer.depth,
+          images.gbuffer.normal, images.gbuffer.base, images.transmittance})
         if (output && !graph.isAbsent(output)) graph.markOutput(output);
+    graph.markOutput(images.display.invalidPixels); // the pass that counts them may run again
     if (request.separateTerms)
         for (uint32_t i = 0; i < images.terms.count; ++i)
             graph.markOutput(images.terms.images[i].image);
@@ -249,6 +250,7 @@ Result<FrameResult> Renderer::renderFrame(const FrameRequest& request) {
 Result<FrameResult> Renderer::Impl::renderFrame(const FrameRequest& request) {
     Impl& r = *this;
     CHECK(r.scene != nullptr, "setScene() comes before renderFrame()");
+    r.hasPicture = false;
     if (request.width < 1 || request.height < 1 || request.width > kLargestPicture ||
         request.height > kLargestPicture)
         return Error{
@@ -268,11 +270,23 @@ Result<FrameResult> Renderer::Impl::renderFrame(const FrameRequest& request) {
     const Result<void> done = r.executor.execute();
     r.order.plan = nullptr;
     if (!done) return done.error();
+    r.hasPicture = true;
 
     FrameResult result;
     result.plan = *plan;
     if (request.converge) r.measureAverage(result);
     return result;
+}
+
+Result<bool> Renderer::toneMapAgain() {
+    Impl& r = *impl_;
+    if (!r.hasPicture || r.images.beautyMayDependOnExposure) return false;
+    r.order.ev100 = r.scene->ev100;
+    *r.images.display.params =
+        tonemapParams(r.order.ev100, r.postSettings, r.order.view.data.seed);
+    if (const Result<void> done = r.executor.runAgain(r.images.display.pass); !done.ok())
+        return done.error();
+    return true;
 }
 
 const fg::FrameReport& Renderer::report() const { return impl_->executor.report(); }

@@ -99,6 +99,12 @@ public:
     /// The driver has no room for a picture of this size.
     Result<FrameResult> renderFrame(const FrameRequest& request);
 
+    /// Shows the last frame with the exposure (Scene::ev100) and the settings post.* of now. The tone-mapping pass alone runs, over the linear
+    /// picture that is kept, so the display image is the one that a whole frame would give, to the last bit. False, and nothing
+    /// was done, where it takes a whole frame: none was rendered yet, the last one failed, or a debug view or a plugin's post
+    /// effect, which may depend on the exposure, is in the picture. Errors: a shader that never compiled.
+    Result<bool> toneMapAgain();
+
     // Read-backs of the last frame; each waits for the GPU. Linear and unexposed, top row first.
     [[nodiscard]] Image readBeauty();
     [[nodiscard]] std::vector<TermImage> readTerms();

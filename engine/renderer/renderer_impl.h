@@ -62,6 +62,7 @@ struct Renderer::Impl {
     Accumulation average;
     FrameOrder order;
     FrameImages images;
+    bool hasPicture = false; // the last frame succeeded, and its images are still there
     fg::TextureHandle inspected;
 
     void registerSettings();

@@ -115,7 +115,7 @@ std::map<std::string, double> Renderer::readStatistics() {
 
 std::vector<uint8_t> Renderer::readDisplay() {
     const Image image =
-        impl_->executor.readImage(impl_->inspected ? impl_->inspected : impl_->images.display);
+        impl_->executor.readImage(impl_->inspected ? impl_->inspected : impl_->images.display.image);
     std::vector<uint8_t> bytes(size_t(image.width) * size_t(image.height) * 3);
     for (size_t i = 0; i < bytes.size(); ++i)
         bytes[i] =
@@ -124,7 +124,7 @@ std::vector<uint8_t> Renderer::readDisplay() {
 }
 
 uint32_t Renderer::displayTexture() const {
-    return impl_->executor.textureName(impl_->inspected ? impl_->inspected : impl_->images.display);
+    return impl_->executor.textureName(impl_->inspected ? impl_->inspected : impl_->images.display.image);
 }
 
 Result<Image> Renderer::readAov(std::string_view name) {

@@ -2,8 +2,6 @@
 
 #include <cmath>
 
-#include "shared/post.h"
-
 namespace tyndall {
 namespace {
 
@@ -27,6 +25,11 @@ float displayWhite(float ev100, const PostSettings& settings) {
     return 1.2f * std::exp2(ev100 - settings.exposureCompensation);
 }
 
+gpu::TonemapParams tonemapParams(float ev100, const PostSettings& settings, uint32_t seed) {
+    return {1 / displayWhite(ev100, settings), uint32_t(settings.curve), settings.dither ? 1u : 0u,
+            seed};
+}
+
 Display addTonemapPass(fg::FrameGraph& graph, fg::TextureHandle color, float ev100,
                        const PostSettings& settings, uint32_t seed) {
     struct Data {
@@ -34,30 +37,31 @@ Display addTonemapPass(fg::FrameGraph& graph, fg::TextureHandle color, float ev1
         Display display;
         gpu::TonemapParams params;
     };
-    return graph
-        .addPass<Data>(
-            "tonemap",
-            [&](fg::Builder& builder, Data& data) {
-                const fg::TextureDesc size = graph.desc(color);
-                data.color = builder.read(color);
-                data.display.image = builder.create(
-                    "display", fg::texture2D(fg::Format::RGBA8, size.width, size.height));
-                data.display.invalidPixels =
-                    builder.create("display.invalidPixels", fg::BufferDesc{2 * sizeof(uint32_t)});
-                const float exposure = 1 / displayWhite(ev100, settings);
-                data.params = {exposure, uint32_t(settings.curve), settings.dither ? 1u : 0u, seed};
-            },
-            [](const Data& data, fg::PassContext& context) {
-                context.clearBuffer(data.display.invalidPixels, 0);
-                context.barrier(fg::Access::StorageWrite);
-                context.compute("post/tonemap.comp")
-                    .bind("image", data.color)
-                    .bind("display", data.display.image)
-                    .bind("InvalidPixels", data.display.invalidPixels)
-                    .params(data.params)
-                    .dispatchOver(data.display.image);
-            })
-        .display;
+    const Data& pass = graph.addPass<Data>(
+        "tonemap",
+        [&](fg::Builder& builder, Data& data) {
+            const fg::TextureDesc size = graph.desc(color);
+            data.color = builder.read(color);
+            data.display.image = builder.create(
+                "display", fg::texture2D(fg::Format::RGBA8, size.width, size.height));
+            data.display.invalidPixels =
+                builder.create("display.invalidPixels", fg::BufferDesc{2 * sizeof(uint32_t)});
+            data.params = tonemapParams(ev100, settings, seed);
+            data.display.params = &data.params;
+        },
+        [](const Data& data, fg::PassContext& context) {
+            context.clearBuffer(data.display.invalidPixels, 0);
+            context.barrier(fg::Access::StorageWrite);
+            context.compute("post/tonemap.comp")
+                .bind("image", data.color)
+                .bind("display", data.display.image)
+                .bind("InvalidPixels", data.display.invalidPixels)
+                .params(data.params)
+                .dispatchOver(data.display.image);
+        });
+    Display display = pass.display;
+    display.pass = &pass;
+    return display;
 }
 
 } // namespace tyndall

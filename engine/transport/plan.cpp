@@ -298,6 +298,20 @@ TermSet possibleTerms(const SceneTraits& traits) {
     return set;
 }
 
+std::vector<int> techniquesFor(Term term, const FramePlan& plan,
+                               std::span<const Technique> techniques) {
+    std::vector<int> result;
+    const MediaSet missing = plan.missingIn(term);
+    for (size_t i = 0; i < techniques.size(); ++i) {
+        const Technique& technique = techniques[i];
+        const TermSet given = technique.claims & ~kDirectTerms & plan.wanted & plan.possible;
+        const bool here = !(bit(term) & kTermsInMedia) || (technique.media & missing) != 0;
+        if (missing != 0 && (given & bit(term)) && here && technique.accepts(given, plan.possible))
+            result.push_back(int(i));
+    }
+    return result;
+}
+
 Result<FramePlan> makePlan(std::string_view gi, TermSet wanted,
                            std::span<const Technique> techniques, const SceneTraits& traits) {
     FramePlan plan;

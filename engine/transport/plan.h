@@ -73,6 +73,11 @@ struct FramePlan {
 /// Terms that these traits allow to be other than zero.
 TermSet possibleTerms(const SceneTraits& traits);
 
+/// Techniques, by index, that could compute a term that `plan` leaves out, if they were chosen by name instead: they claim it, in a kind of medium in which
+/// it is missing, and can be given what else they claim of the terms that are wanted.
+std::vector<int> techniquesFor(Term term, const FramePlan& plan,
+                               std::span<const Technique> techniques);
+
 /// `gi` is auto, none, a technique's name, or a list TERM=TECHNIQUE,… of indirect terms: those that it does not name are not rendered.
 /// TERM:MEDIA=TECHNIQUE gives a term in one kind of medium (shapes, height, grids, particles): LVVE:particles=network,LVVE=lpv.
 /// Direct terms stay with the engine's own passes (`direct`), unless the list gives one to a technique that claims it.

@@ -28,6 +28,66 @@ TEST_P(ExecutorLifetimeTest, ACulledPassDoesNotRun) {
     EXPECT_EQ(runs, 1);
 }
 
+TEST_P(ExecutorLifetimeTest, RunningOnePassAgainRunsThatPassAlone) {
+    static int runsBefore;
+    runsBefore = 0;
+    begin();
+    const Data& first = graph().addPass<Data>(
+        "first", [](Builder& b, Data& d) { d.out = b.create("first", color()); },
+        [](const Data& d, PassContext& c) {
+            ++runsBefore;
+            c.compute("test/fill.comp")
+                .bind("target", d.out)
+                .set("value", 2.0f)
+                .dispatchOver(d.out);
+        });
+    static float amount; // what changes between the runs
+    amount = 1;
+    const Data& second = graph().addPass<Data>(
+        "second",
+        [&](Builder& b, Data& d) {
+            d.in = b.read(first.out);
+            d.out = b.create("second", color());
+        },
+        [](const Data& d, PassContext& c) {
+            c.compute("test/add.comp")
+                .bind("source", d.in)
+                .bind("target", d.out)
+                .set("value", amount)
+                .dispatchOver(d.out);
+        });
+    graph().markOutput(first.out);
+    graph().markOutput(second.out);
+    run();
+    EXPECT_EQ(everywhere(second.out), 3);
+    amount = 5;
+    const Result<void> again = executor().runAgain(&second);
+    ASSERT_TRUE(again.ok()) << again.message();
+    EXPECT_EQ(everywhere(second.out), 7);
+    EXPECT_EQ(runsBefore, 1);
+}
+
+TEST_P(ExecutorLifetimeTest, APassWhoseInputIsGoneIsNotRunAgain) {
+    begin();
+    const TextureHandle in = fill("in", 1);
+    const Data& pass = graph().addPass<Data>(
+        "pass",
+        [&](Builder& b, Data& d) {
+            d.in = b.read(in);
+            d.out = b.create("out", color());
+        },
+        [](const Data& d, PassContext& c) {
+            c.compute("test/add.comp")
+                .bind("source", d.in)
+                .bind("target", d.out)
+                .set("value", 1.0f)
+                .dispatchOver(d.out);
+        });
+    graph().markOutput(pass.out);
+    run();
+    EXPECT_THROW((void)executor().runAgain(&pass), CheckFailure);
+}
+
 TEST_P(ExecutorLifetimeTest, ACachedPassKeepsItsContent) {
     uint64_t key = 1;
     const auto frame = [&](float value) {

@@ -70,6 +70,26 @@ TEST(TransportPlan, WhatNobodyClaimsIsMissing) {
     EXPECT_EQ(plan.missing, kAllTerms & ~(kDirectTerms | terms(Term::LVVE, Term::LXVVE)));
 }
 
+TEST(TransportPlan, WhoCouldComputeAMissingTermIsWhoRendersItWhenChosen) {
+    SceneTraits noParticles = kEverything;
+    noParticles.kinds = kAllMedia & ~kParticleMedia;
+    for (const SceneTraits& traits : {kEverything, noParticles})
+        for (const TermSet wanted : {kAllTerms, kAllTerms & ~bit(Term::LXVVE)}) {
+            const FramePlan none = makePlan("none", wanted, kTechniques, traits).value();
+            for (uint32_t t = 0; t < kTermCount; ++t) {
+                std::vector<int> able;
+                for (size_t i = 0; i < kTechniques.size(); ++i) {
+                    const Result<FramePlan> chosen =
+                        makePlan(kTechniques[i].name, wanted, kTechniques, traits);
+                    const bool less = chosen.ok() && chosen->missingIn(Term(t)) !=
+                                                         none.missingIn(Term(t));
+                    if (less) able.push_back(int(i));
+                }
+                EXPECT_EQ(techniquesFor(Term(t), none, kTechniques), able) << t << " " << wanted;
+            }
+        }
+}
+
 TEST(TransportPlan, TermsThatTheSceneCannotHaveAreNotMissing) {
     const SceneTraits vacuum{true, false, false, true};
     const FramePlan plan = makePlan("none", kAllTerms, kTechniques, vacuum).value();

@@ -36,15 +36,18 @@ public:
 
     void beginFrame();
     Result<void> execute();
+    Result<void> runAgain(const void* data);
     void compile();
     Result<void> runPasses();
     void runPass(uint32_t index, uint64_t key);
+    void finishCommands();
     void prepareStorage(const CompiledPass& pass);
     Result<void> countTexels(uint32_t index);
     void report(const CompiledPass& pass, uint64_t key);
     void sumTimings();
     void finishReport();
     void waitForTimings();
+    bool stays(const CompiledResource& resource) const;
     const Storage& readable(uint32_t resource, uint32_t version, const char* what) const;
 
     ExecutorOptions options_, next_;
@@ -134,13 +137,41 @@ Result<void> Executor::Impl::runPasses() {
         if (done.ok() && context_.failure()) done = *context_.failure();
         if (runs && done.ok() && options_.checkTexels) done = countTexels(i);
     }
+    finishCommands();
+    framebuffers_.endFrame();
+    return done;
+}
+
+void Executor::Impl::finishCommands() {
     // What shaders wrote in this frame is there for the next, for read-backs, and for whoever draws with GL himself.
     context_.memoryBarrier(GL_ALL_BARRIER_BITS);
     timings_.endFrame();
     ring_.endFrame();
-    framebuffers_.endFrame();
     glBindFramebuffer(GL_FRAMEBUFFER, 0);
-    return done;
+}
+
+Result<void> Executor::Impl::runAgain(const void* data) {
+    CHECK(executed_, "runAgain() before execute()");
+    const auto found = std::find_if(compiled_.passes.begin(), compiled_.passes.end(),
+                                    [&](const CompiledPass& pass) { return pass.data == data; });
+    CHECK(found != compiled_.passes.end() && found->status == PassStatus::Ran,
+          "runAgain() of a pass that did not run in this frame");
+    for (const ResourceUse& use : compiled_.usesOf(*found))
+        CHECK(stays(compiled_.resources[use.resource]),
+              fmt::format("pass '{}' cannot run again: mark '{}' as an output", found->name,
+                          compiled_.resources[use.resource].name));
+    const Clock::time_point start = Clock::now();
+    const auto index = size_t(found - compiled_.passes.begin());
+    context_.beginFrame();
+    timings_.beginFrame();
+    const uint64_t key = timings_.keyOf(found->name);
+    runPass(uint32_t(index), key);
+    finishCommands();
+    report_.passes[index].cpuMs = millisecondsSince(start);
+    report_.passes[index].gpuMs = timings_.lastMs(key);
+    sumTimings();
+    if (context_.failure()) return *context_.failure();
+    return {};
 }
 
 void Executor::Impl::runPass(uint32_t index, uint64_t key) {
@@ -242,15 +273,20 @@ void Executor::Impl::finishReport() {
     report_.barriers = context_.barrierCount();
 }
 
+/// Has no other resource taken its storage since?
+bool Executor::Impl::stays(const CompiledResource& resource) const {
+    return resource.slot == kNoIndex || resource.isOutput || options_.keepAll;
+}
+
 /// The storage of something that still holds what the frame wrote.
 const Storage& Executor::Impl::readable(uint32_t index, uint32_t version, const char* what) const {
     CHECK(executed_, fmt::format("{} before execute()", what));
     CHECK(graph_.versionOf(index, version) != kNoIndex,
           fmt::format("{} of a handle that is not of this frame", what));
     const CompiledResource& resource = compiled_.resources[index];
-    const bool stays = resource.slot == kNoIndex || resource.isOutput || options_.keepAll;
-    CHECK(stays, fmt::format("{} of '{}', whose storage other resources use: mark it as an output",
-                             what, resource.name));
+    CHECK(stays(resource),
+          fmt::format("{} of '{}', whose storage other resources use: mark it as an output", what,
+                      resource.name));
     return world_.storageOf(index, version);
 }
 
@@ -270,6 +306,7 @@ TextureHandle Executor::findTexture(std::string_view name) const {
     return impl_->graph_.findTexture(name);
 }
 Result<void> Executor::execute() { return impl_->execute(); }
+Result<void> Executor::runAgain(const void* data) { return impl_->runAgain(data); }
 const FrameReport& Executor::report() const { return impl_->report_; }
 void Executor::waitForTimings() { impl_->waitForTimings(); }
 const CompiledGraph& Executor::compiled() const { return impl_->compiled_; }

@@ -122,6 +122,10 @@ public:
     [[nodiscard]] TextureHandle findTexture(std::string_view name) const;
     /// Compiles and runs the graph. Errors: a shader that does not compile and has no last good version.
     Result<void> execute();
+    /// After execute(): runs one pass of the frame again, and no other. `data` is what addPass() returned for it. For a pass whose
+    /// parameters have changed since, such as an exposure. All that it reads and writes must still be there (outputs, persistent
+    /// and static resources; a CHECK). What it creates is written anew. Errors: as execute().
+    Result<void> runAgain(const void* data);
 
     [[nodiscard]] const FrameReport& report() const;
     /// Waits for the GPU times of the frames so far and brings report() up to date with them: for the end of a run.
