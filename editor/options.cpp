@@ -16,7 +16,7 @@ constexpr const char* kExamples =
     "  tyndall-editor\n"
     "      opens the demo scene\n"
     "  tyndall-editor room.gltf\n"
-    "  tyndall-editor smoke.scene.json --gi octaves --set media.octaves.count=3\n"
+    "  tyndall-editor smoke.scene.json --gi octaves --set octaves.count=3\n"
     "  tyndall-editor smoke.scene.json --converge --frames 64 --size 640x360 --screenshot smoke.png --hidden\n"
     "\nExit status: 0 done; 1 it failed, or there is no display; 2 the command line or a file is wrong.";
 

@@ -16,7 +16,7 @@ constexpr const char* kExamples =
     "  tyndall capture smoke.scene.json -o smoke.exr --size 1920x1080 --aov depth,transmittance,terms\n"
     "  tyndall capture smoke.scene.json -o 'frame-%04d.png' --frames 48 --time-step 0.04\n"
     "  tyndall capture smoke.scene.json -o still.exr --converge --frames 1024 --report still.json\n"
-    "  tyndall capture smoke.scene.json -o fast.png --quality low --set media.octaves.count=3 --max-ms 33\n"
+    "  tyndall capture smoke.scene.json -o fast.png --quality low --set octaves.count=3 --max-ms 33\n"
     "\nExit status: 0 done; 1 it failed or a threshold was not met; 2 the command line or a file is wrong.";
 
 void addOptions(CLI::App& command, CaptureOptions& options) {
