@@ -31,7 +31,7 @@ const plugin::TechniqueInfo& @Name@Technique::info() const {
         .setCount = 0,
         .media = kAllMedia,
         .separatesMedia = 0,
-        .automatic = 0, // measure it first: docs/benchmarks.md
+        .automatic = 0, // measure it first: tests/bench/harness.py
         .cost = 2,
         .errorOnSurfaces = 1, // it has no light for them
         .errorInMedia = 0.12f};

@@ -37,7 +37,7 @@ struct TechniqueInfo {
     MediaSet media;         // kinds of media in which it computes its terms in media: kAllMedia, or some
     uint32_t separatesMedia; // 1: it leaves out the kinds that are not in FrameInputs::kinds
     uint32_t automatic;      // 1: `auto` may choose it; 0: only who asks for it gets it
-    // Typical figures at medium quality, one frame, measured on software GL (docs/benchmarks.md).
+    // Typical figures at medium quality, one frame, measured on software GL (docs/measured).
     float cost;            // time of a frame over that of one with direct light alone
     float errorOnSurfaces; // relmse of its terms on surfaces, of those in media
     float errorInMedia;
