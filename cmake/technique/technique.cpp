@@ -9,7 +9,7 @@ namespace {
 const SettingDesc k@Name@Settings[] = {
     TYNDALL_INT(
         @Name@Settings, directions, "@name@.directions", "Directions", "", 1, 32, 2,
-        "Directions in which each segment of a ray looks at the media around; more are less noisy and take longer."),
+        "Directions in which each segment of a ray samples the media around it. More are less noisy and slower."),
 };
 
 constexpr PresetEntry k@Name@Presets[] = {

@@ -176,7 +176,7 @@ const plugin::TechniqueInfo& LpvTechnique::info() const {
     static constexpr plugin::TechniqueInfo kInfo{
         .name = "lpv",
         .title = "Light propagation volume",
-        .help = "Light that surfaces reflect and media scatter, propagated in a lattice: all indirect light.",
+        .help = "Propagates light that surfaces reflect and media scatter through a lattice: all indirect light.",
         .claims = kIndirectOnSurfaces | kIndirectInMedia,
         .sets = kSets,
         .setCount = uint32_t(std::size(kSets)),

@@ -324,7 +324,7 @@ const plugin::TechniqueInfo& VplTechnique::info() const {
     static constexpr plugin::TechniqueInfo kInfo{
         .name = "vpl",
         .title = "Virtual point lights",
-        .help = "Light of random walks, gathered from the virtual lights that they leave: all indirect light.",
+        .help = "Gathers virtual lights that random walks leave: all indirect light, noisy in single frames.",
         .claims = kIndirectOnSurfaces | kIndirectInMedia,
         .sets = nullptr,
         .setCount = 0,
