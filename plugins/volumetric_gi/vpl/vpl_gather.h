@@ -1,5 +1,5 @@
 #pragma once
-// Virtual point lights on the GPU: their buffers, and what they do in the picture.
+// Virtual point lights on the GPU: their buffers, and the light that they give to surfaces and media.
 
 #include "shared/vpl.h"
 #include "volumetric_gi/shared/traced_scene.h"
@@ -11,7 +11,7 @@ namespace tyndall::volumetric_gi {
 struct VplBuffers {
     fg::BufferHandle lights, walks, maps;
     TracedBuffers traced;
-    fg::BufferHandle depths;                  // of grids; null: without
+    fg::BufferHandle depths;                  // optical depth of grids; null: no grids
     fg::BufferHandle nearSurfaces, nearMedia; // CompensationLight
 };
 
@@ -29,13 +29,13 @@ Command& bindVpls(Command& command, const VplBuffers& buffers, const gpu::VplPar
         .bind("VplDepths", buffers.depths);
 }
 
-/// What goes up; must live until the frame has been executed. `lightsKey`, `mapsKey`, `nearKey`: of its content.
+/// Data to upload; they must live until the frame has been executed. `lightsKey`, `mapsKey`, `nearKey`: of its content.
 struct VplUpload {
     const VplSet* set = nullptr;
-    const std::vector<uint32_t>* maps = nullptr; // as rays have made them
-    const SurfacePoints* points = nullptr;       // not empty: they are to be splatted into maps
+    const std::vector<uint32_t>* maps = nullptr; // maps by rays
+    const SurfacePoints* points = nullptr;       // not empty: maps are splatted from them
     TracedBuffers traced;
-    const std::vector<vec4>*nearSurfaces = nullptr, *nearMedia = nullptr; // empty: without
+    const std::vector<vec4>*nearSurfaces = nullptr, *nearMedia = nullptr; // empty: no paths
     uint64_t lightsKey = 0, mapsKey = 0, nearKey = 0;
 };
 

@@ -8,7 +8,7 @@
 
 namespace tyndall::volumetric_gi {
 
-/// Who makes maps of what virtual lights see: rays on the processor, or points that the graphics processor splats.
+/// How visibility maps are made: by rays on the processor, or from points that the GPU splats.
 constexpr int32_t kVplMapsOfRays = 0, kVplMapsOfPoints = 1;
 
 struct VplSettings {

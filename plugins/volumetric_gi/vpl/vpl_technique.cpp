@@ -27,7 +27,7 @@ double roundsOfLight(const MediaResources& media, bool grids, const TracedScene&
                std::log2(double(scene.tree().size()) + 1);
 }
 
-/// Of a light that is shown, part of the mean distance between lights.
+/// Radius of a light in the debug view, over the mean distance between lights.
 constexpr double kBall = 0.08;
 
 /// As addStatistics() fills them in; milliseconds are of this frame, on the processor.
@@ -57,15 +57,15 @@ private:
 /// Of points that are splatted into maps: lights side by side have different ones, so that their errors differ.
 constexpr uint32_t kPointSets = 8;
 
-/// With which paths gather their own walk, over the content's radius. The light of one walk is all that lamps give: nearer, it outshines the picture (at 0.3
-/// paths in a hall in the sun have 1.4 to 1.7 times the noise); farther, dense media have more (at 1 the cloud and fog of τ 8 have 1.3 to 1.5 times that of 0.3).
+/// Clamp distance of the walks that paths gather, over the content's radius. One walk carries all power of the lights: clamped nearer, it outshines the picture (at 0.3
+/// paths in a sunlit hall have 1.4 to 1.7 times the noise); clamped farther, dense media are noisier (at 1 the cloud and fog of τ 8 have 1.3 to 1.5 times the noise of 0.3).
 constexpr double kBoundOfPaths = 0.6;
 
-/// With which it is found out what lights matter.
+/// Visible points that the importance of lights is measured at.
 constexpr uint32_t kSeenPoints = 256;
 
-/// Between lights, metres: (V/M)^(1/3) (transport.md, 5.1 i) of the M lights in the content and the box around them; of all, where none are there.
-/// `times`: so many times as many lights as are given.
+/// Mean distance between lights, metres: (V/M)^(1/3) of the M lights in the content and their box, of volume V; of all lights if none is there.
+/// `times`: multiplies M.
 double meanDistanceOf(const std::vector<dvec3>& lights, const Bounds& content, double times) {
     Bounds around[2];
     double count[2] = {};
@@ -89,8 +89,8 @@ uint32_t termBits(TermSet given, const Term (&terms)[4]) {
     return bits;
 }
 
-/// As the paper has it (docs/techniques/vpl.md, "As the paper prints it"): every walk's lights are gathered, one bound for all light, and what it takes away is
-/// followed one step in media, without the light that comes straight from a light there.
+/// As in the paper (docs/techniques/vpl-explained.md, "Corrections to the paper"): the lights of every walk, one clamping distance for all light, and compensation by
+/// one step in media that does not gather direct light.
 VplSettings asInThePaper(VplSettings settings) {
     settings.candidates = 1;
     settings.surfaceClamp = settings.clamp;
@@ -107,7 +107,7 @@ bool converges(const plugin::FrameInputs& inputs) {
 
 void VplTechnique::makeLights(const plugin::FrameInputs& inputs) {
     const uint32_t generation = converges(inputs) ? inputs.view.data.frameIndex : 0;
-    // Which lights matter changes with the media: where walks are to be kept, all are.
+    // Importance changes with the media: where walks are kept while media change, all lights are.
     const bool inTurns = used_.renewed > 0 && !used_.incremental && !converges(inputs);
     const uint32_t candidates =
         used_.incremental || inTurns ? 1 : uint32_t(used_.candidates);
@@ -143,7 +143,7 @@ void VplTechnique::makeLights(const plugin::FrameInputs& inputs) {
     }
     set_ = packWalks(
         scene_.usesProxies() ? reweighed(walks_, *scene_.scene().media, scene_.media()) : walks_, what);
-    if (!scene_.usesProxies()) walks_ = {}; // they name media that are not kept
+    if (!scene_.usesProxies()) walks_ = {}; // they point to media that are not kept
     if (anew) makeMaps(generation);
     walksKey_ = walksKey;
     lightsKey_ = wantedKey_ = lightsKey;
@@ -151,7 +151,7 @@ void VplTechnique::makeLights(const plugin::FrameInputs& inputs) {
     stale_ = nextTurn_ = 0;
 }
 
-/// Maps of what all lights see.
+/// Visibility maps of all lights.
 void VplTechnique::makeMaps(uint32_t generation) {
     const Stopwatch watch(times_.maps);
     const tracing::SurfaceScene& surfaces = *scene_.scene().surfaces;
@@ -164,7 +164,7 @@ void VplTechnique::makeMaps(uint32_t generation) {
         maps_ = makeVisibilityMaps(surfaces, set_, uint32_t(used_.mapSide), generation);
 }
 
-/// After a change of lights or media: so many walks a frame, in turn, until all are of the scene as it is. Maps of the other lights stay.
+/// After a change of lights or media: renews this many walks a frame, in turn, until all belong to the present scene. Maps of the other lights stay.
 void VplTechnique::renewSome(const WalkOrder& order, uint64_t lightsKey) {
     if (lightsKey != wantedKey_) {
         wantedKey_ = lightsKey;
@@ -198,7 +198,7 @@ void VplTechnique::renewSome(const WalkOrder& order, uint64_t lightsKey) {
     lightsKey_ = walksKey_ = cacheKey(lightsKey, stale_);
 }
 
-/// Of the lights of all candidates those that matter to the picture.
+/// Chooses among the lights of all candidates by importance.
 void VplTechnique::choose(const plugin::FrameInputs& inputs, const WalkOrder& order,
                           uint32_t candidates) {
     const tracing::SurfaceScene& surfaces = *scene_.scene().surfaces;
@@ -211,7 +211,7 @@ void VplTechnique::choose(const plugin::FrameInputs& inputs, const WalkOrder& or
                  meanDistanceOf(lights, scene_.content(), 1.0 / candidates), seed);
 }
 
-/// By paths on the processor: in averaged frames alone, for they are noise that has to be averaged. Not where walks go through proxy media.
+/// Compensation paths on the processor: in averaged frames alone, because they are noisy. Not if walks go through proxy media.
 bool VplTechnique::followsWhatIsMissed(const plugin::FrameInputs& inputs) const {
     return used_.nearPaths > 0 && std::max(used_.clamp, used_.surfaceClamp) > 0 &&
            used_.fromSurfaces && used_.fromMedia &&
@@ -250,19 +250,19 @@ void VplTechnique::makeNear(const plugin::FrameInputs& inputs) {
     near_ = compensationLight(inputs.view.data, scene_.scene(), scene_.emission(), order);
 }
 
-/// How near light is clamped, and what brings what that takes away.
+/// Clamping distances, and what compensates for the clamped light.
 void VplTechnique::setClamps(const plugin::FrameInputs& inputs, gpu::VplParams& params) const {
-    // The bound follows from all lights of an average: what it takes away tends to nothing as frames come.
+    // The clamping distance follows from all lights of an average: the clamped light tends to 0 with more frames.
     const double frames =
         converges(inputs) && !asPrinted() ? double(inputs.view.data.frameIndex) + 1 : 1;
     const double mean = meanDistanceOf(set_.positions, scene_.content(), frames);
     const auto squared = [](double x) { return float(x * x); };
     params.clampSquared = squared(mean * double(used_.clamp));
-    // Lights in a lobe, whose solid angle goes with the fourth power of roughness, become more as frames come, though it narrows; so may what is gathered near
-    // by. Between surfaces the bound may not: the distance d below which one light in d² outshines the average must fall slower than the root of the frames.
+    // The solid angle of a lobe goes with the fourth power of roughness: it may narrow while lights in it become more. The same holds for the relaxed clamping.
+    // Not between surfaces: the distance d below which one light in d² outshines the average must fall more slowly than the root of the number of frames.
     const double finer = std::pow(frames, 1.0 / 6);
     params.mediumClampSquared = squared(mean * double(used_.surfaceClamp));
-    // Where paths bring what it takes away, it costs no light, and stays wide for less noise.
+    // Where paths compensate for it no light is lost, and the distance stays large for less noise.
     params.nearLight = 0;
     if (followsWhatIsMissed(inputs)) {
         params.nearLight = gpu::kVplNearSurfaces;
@@ -303,7 +303,7 @@ VplGather VplTechnique::gather(const plugin::FrameInputs& inputs) const {
     params.surfaceTerms =
         termBits(inputs.terms, {Term::LSSE, Term::LVSE, Term::LXSSE, Term::LXVSE});
     params.mediaTerms = termBits(inputs.terms, {Term::LSVE, Term::LVVE, Term::LXSVE, Term::LXVVE});
-    // The closed form takes all light around a point for one, and all media.
+    // The closed form needs all terms around a point, and all media.
     if (params.compensation == gpu::kVplClosedForm &&
         (params.mediaTerms != gpu::kVplAllTerms || inputs.kinds != kAllMedia))
         params.compensation = gpu::kVplTraced;

@@ -1,5 +1,5 @@
-// Where the power of a step of the printed scheme goes: sums over workgroups, in the order of measure.comp. What is neither absorbed nor blocked nor
-// escaped nor there after the step is what the scheme loses (or makes).
+// Energy balance of a step of the printed scheme: sums over workgroups, in the order of measure.comp. Power that is neither absorbed nor blocked nor
+// escaped nor stored after the step is what the scheme loses (or adds).
 #include "gi/lpv/printed.glsl" // LpvRadiance: before the step
 #define LEDGER 1
 #include "gi/lpv/workgroup_sums.glsl"

@@ -1,14 +1,14 @@
-// The geometry term of a virtual light, held at a bound.
+// The clamped geometry term of a virtual light.
 #ifndef TYNDALL_GI_VPL_BOUND
 #define TYNDALL_GI_VPL_BOUND
 
-/// min(G, b) / (D_x D_y), 1/m², with G = D_x D_y / d² and b = 1/clampSquared. `cosines`: D_x D_y. Finite for coincident points, and without a bound.
+/// min(G, b) / (D_x D_y), 1/m², with G = D_x D_y / d² and b = 1/clampSquared. `cosines`: D_x D_y. Finite for coincident points, and without clamping.
 float heldInverseSquare(float squared, float cosines, float clampSquared) {
     return 1.0 / max(max(squared, cosines * clampSquared), 1e-30);
 }
 
-/// Part of a medium's light that the bound takes away where light is the same all around: F(x) = 1 - e⁻ˣ - (2 - e⁻ˣ(x² + 2x + 2))/x², x = σ·clamp
-/// (transport.md 4.1, finding 7); a series where the terms cancel.
+/// Part of a medium's light that clamping removes where light is even: F(x) = 1 - e⁻ˣ - (2 - e⁻ˣ(x² + 2x + 2))/x², x = σ·clamp;
+/// a series where the terms cancel.
 vec3 clampLoss(vec3 x) {
     vec3 series = x * (2.0 / 3.0 - x * (1.0 / 4.0 - x * (1.0 / 15.0 - x * (1.0 / 72.0 - x / 420.0))));
     vec3 closed = 1.0 - exp(-x) - (2.0 - exp(-x) * (x * x + 2.0 * x + 2.0)) / max(x * x, vec3(1e-12));

@@ -1,12 +1,12 @@
-// Light of virtual point lights that media scatter to the eye; also for pixels that upsampling left open.
+// Light of virtual point lights that media scatter to the eye; also for pixels that upsampling leaves open.
 // COMPENSATION: kVplClamped, kVplClosedForm or kVplTraced.
 #define MARCH_FILLS
 #include "gi/shared/march.glsl"
 #include "gi/vpl/scattered_light.glsl"
 
-layout(std430) readonly buffer VplNear { vec4 vplNear[]; }; // nits that neither gathering nor its step near by brings, by square
+layout(std430) readonly buffer VplNear { vec4 vplNear[]; }; // nits of compensation paths, by square
 
-/// Of the square that a pixel lies in.
+/// Of the square of a pixel.
 vec3 nearLightOf(ivec2 pixel, ivec2 size) {
     if ((vpl.nearLight & kVplNearMedia) == 0u) return vec3(0.0);
     ivec2 square = pixel / int(params.factor);
