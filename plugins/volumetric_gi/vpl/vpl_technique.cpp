@@ -59,7 +59,7 @@ constexpr uint32_t kPointSets = 8;
 
 /// Clamp distance of the walks that paths gather, over the content's radius. One walk carries all power of the lights: clamped nearer, it outshines the picture (at 0.3
 /// paths in a sunlit hall have 1.4 to 1.7 times the noise); clamped farther, dense media are noisier (at 1 the cloud and fog of τ 8 have 1.3 to 1.5 times the noise of 0.3).
-constexpr double kBoundOfPaths = 0.6;
+constexpr double kClampOfPaths = 0.6;
 
 /// Visible points that the importance of lights is measured at.
 constexpr uint32_t kSeenPoints = 256;
@@ -243,7 +243,7 @@ void VplTechnique::makeNear(const plugin::FrameInputs& inputs) {
     path.middle = dvec3(params.content);
     if (params.content.w > 0) {
         path.radius = 1 / std::sqrt(double(params.content.w));
-        path.clampDistance = kBoundOfPaths * path.radius;
+        path.clampDistance = kClampOfPaths * path.radius;
     }
     path.leastRoughness = double(params.leastRoughness);
     const Stopwatch watch(times_.near);

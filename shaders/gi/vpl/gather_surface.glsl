@@ -1,7 +1,7 @@
 // Light of virtual point lights on a surface.
 // MEDIA: 0: there are none; 1: they attenuate it. COMPENSATION: 2: clamped light of media near by is compensated for by a traced step.
 #if MEDIA
-#include "gi/vpl/near_medium.glsl"
+#include "gi/vpl/compensation.glsl"
 #else
 #include "common/random.glsl"
 #include "gi/vpl/visibility.glsl"
@@ -62,7 +62,7 @@ SurfaceLight gatherSurface(Receiver r, uint number, uint stride, uvec2 pixel) {
         vec3 near = vec3(0.0);
         if (drawNearPoint(r.position, direction, reach, noise.w, t, there)) {
             uint number = uint(u.z * float(vpl.classes));
-            near = walksInMedium(number, r.position + direction * t, direction, there, relaxedBound(widest), vplTermsOneStepOn(vpl.surfaceTerms)); // not `reach`, which is 0 for grazing directions
+            near = walksInMedium(number, r.position + direction * t, direction, there, relaxedClampSquared(widest), vplTermsOneStepOn(vpl.surfaceTerms)); // not `reach`, which is 0 for grazing directions
             if ((vpl.surfaceTerms & (1u << kVplOfMedia)) != 0u) near += segmentInScatter(Ray(r.position, direction), there, vpl.lightsOfScene, noise.xyz, number);
             near *= nearPointWeight(r.position, direction, reach, t);
         }

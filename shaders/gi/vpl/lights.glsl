@@ -5,7 +5,7 @@
 #include "common/phase_function.glsl"
 #include "common/view.glsl"
 #include "lighting/brdf.glsl"
-#include "gi/vpl/bound.glsl"
+#include "gi/vpl/clamping.glsl"
 #include "gi/vpl/params.glsl"
 
 layout(std430) readonly buffer VplLights { VplData vplLights[]; };
@@ -20,10 +20,10 @@ float vplClampScale(vec3 position) {
 
 const float kMostLost = 1e4; // over the clamped value: the loss at a light itself is infinite
 
-/// heldInverseSquare(), or what clamping removes, for the view that shows it.
+/// clampedInverseSquare(), or what clamping removes, for the view that shows it.
 float vplInverseSquare(float squared, float cosines, float clampSquared) {
-    float held = heldInverseSquare(squared, cosines, clampSquared);
-    return vpl.lost == 0u ? held : min(1.0 / max(squared, 1e-30), kMostLost * held) - held;
+    float clamped = clampedInverseSquare(squared, cosines, clampSquared);
+    return vpl.lost == 0u ? clamped : min(1.0 / max(squared, 1e-30), kMostLost * clamped) - clamped;
 }
 
 bool vplCounts(uint light, uint terms) { return (terms & (1u << uint(vplLights[light].power.w))) != 0u; }

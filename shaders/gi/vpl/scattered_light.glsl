@@ -1,6 +1,6 @@
 // Light of virtual point lights that media scatter along a ray. Each segment of the ray gathers, at one point, one interleaved subset of the walks; the
 // next segment gathers the next subset (Engelhardt, Novák and Dachsbacher 2010, section 4.2).
-#include "gi/vpl/near_medium.glsl"
+#include "gi/vpl/compensation.glsl"
 
 /// A direction from the mixture of phase functions that scatter the segment's light: where light that goes against `direction` came from.
 /// `weight`: of the function over the density.
@@ -40,13 +40,13 @@ vec3 scatteringOf(Segment s) {
 
 /// Clamped light compensated as if light were even: with F the part that clamping removes of
 /// light that is scattered here, S = S_clamped + albedo F (S_direct + S).
-vec3 evenCompensation(vec3 held, float clampSquared, Segment s, Ray ray, vec3 u, uint number) {
+vec3 evenCompensation(vec3 clamped, float clampSquared, Segment s, Ray ray, vec3 u, uint number) {
     float reach = sqrt(clampSquared);
     vec3 albedo = min(scatteringOf(s) / max(s.depth, vec3(1e-30)), vec3(1.0));
     vec3 again = albedo * clampLoss(s.depth * (reach / s.size));
     Segment here = pointSegment(ray, 0.0, reach);
     vec3 direct = s.size * segmentInScatter(ray, here, vpl.lightsOfScene, u, number);
-    return (held + again * direct) / max(1.0 - again, vec3(1e-3));
+    return (clamped + again * direct) / max(1.0 - again, vec3(1e-3));
 }
 
 /// Light that a segment scatters at `position` against `direction`: of one subset of the walks, and compensation from another subset.
@@ -58,10 +58,10 @@ vec3 gatherAt(uint number, uint other, vec3 position, vec3 direction, Segment s,
     Ray back = Ray(position, direction);
     vec3 at = position;
     Segment here = s;
-    float bound = clampSquared;
+    float stepClampSquared = clampSquared;
     for (uint step = 0u;; ++step) {
         uint terms = step == 0u ? vpl.mediaTerms : vplTermsOneStepOn(vpl.mediaTerms);
-        vec3 gathered = walksInMedium(step == 0u ? number : other, at, back.direction, here, bound, terms);
+        vec3 gathered = walksInMedium(step == 0u ? number : other, at, back.direction, here, stepClampSquared, terms);
 #if COMPENSATION == 2
         if (step > 0u && (vpl.mediaTerms & (1u << kVplOfMedia)) != 0u) gathered += segmentInScatter(back, here, vpl.lightsOfScene, u.xyz, number);
         light += weight * gathered;
@@ -72,7 +72,7 @@ vec3 gatherAt(uint number, uint other, vec3 position, vec3 direction, Segment s,
         float t;
         if (!drawNearPoint(position, back.direction, reach, u.w, t, here)) break;
         at = position + back.direction * t;
-        bound = relaxedBound(reach);
+        stepClampSquared = relaxedClampSquared(reach);
         weight = scatteringOf(s) * overDensity * nearPointWeight(position, back.direction, reach, t);
 #else
         light = gathered;

@@ -81,16 +81,16 @@ uint nearer(uint one, uint other, vec3 direction) {
 }
 
 void offer(uint texel, uint point, float distance, vec3 direction) {
-    uint held = vplMaps[mapStart + texel];
+    uint current = vplMaps[mapStart + texel];
     // Each round more means that another point, nearer than the last, took the texel.
     for (;;) {
-        if (held != kNothing) {
-            float there = distanceAlong(held, direction);
-            if (there < distance || (there == distance && held <= point)) return;
+        if (current != kNothing) {
+            float there = distanceAlong(current, direction);
+            if (there < distance || (there == distance && current <= point)) return;
         }
-        uint found = atomicCompSwap(vplMaps[mapStart + texel], held, point);
-        if (found == held) return;
-        held = found;
+        uint found = atomicCompSwap(vplMaps[mapStart + texel], current, point);
+        if (found == current) return;
+        current = found;
     }
 }
 

@@ -1,6 +1,6 @@
 // Bias compensation by one traced step: clamped light of media near by, from a point that gathers direct light and one interleaved subset of the walks.
-#ifndef TYNDALL_GI_VPL_NEAR_MEDIUM
-#define TYNDALL_GI_VPL_NEAR_MEDIUM
+#ifndef TYNDALL_GI_VPL_COMPENSATION
+#define TYNDALL_GI_VPL_COMPENSATION
 #define MARCH_PHASE_GROUPS PHASE_GROUPS
 #include "common/random.glsl"
 #include "media/march.glsl"
@@ -72,6 +72,6 @@ vec3 nearPointWeight(vec3 position, vec3 direction, float reach, float t) {
 }
 
 /// 1/b at that point, with relaxed clamping; the light that this removes is not compensated for.
-float relaxedBound(float reach) { return reach * reach / (vpl.relaxed * vpl.relaxed); }
+float relaxedClampSquared(float reach) { return reach * reach / (vpl.relaxed * vpl.relaxed); }
 
 #endif

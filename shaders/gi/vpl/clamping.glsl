@@ -1,9 +1,9 @@
 // The clamped geometry term of a virtual light.
-#ifndef TYNDALL_GI_VPL_BOUND
-#define TYNDALL_GI_VPL_BOUND
+#ifndef TYNDALL_GI_VPL_CLAMPING
+#define TYNDALL_GI_VPL_CLAMPING
 
 /// min(G, b) / (D_x D_y), 1/m², with G = D_x D_y / d² and b = 1/clampSquared. `cosines`: D_x D_y. Finite for coincident points, and without clamping.
-float heldInverseSquare(float squared, float cosines, float clampSquared) {
+float clampedInverseSquare(float squared, float cosines, float clampSquared) {
     return 1.0 / max(max(squared, cosines * clampSquared), 1e-30);
 }
 
