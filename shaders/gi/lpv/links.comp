@@ -41,7 +41,7 @@ float crossing(vec3 p, vec3 way, vec3 a, vec3 ab, vec3 ac) {
 }
 
 /// Blocks the link in direction j at its parameter `t`; the first surface's colour stays.
-void shut(uint cell, uint cells, uint j, float t, vec3 colour) {
+void blockLink(uint cell, uint cells, uint j, float t, vec3 colour) {
     atomicOr(links[kLpvBlocked * cells + cell], 1u << j);
     atomicMax(links[(kLpvSurface + j) * cells + cell], packUnorm4x8(vec4(colour, max(1.0 - t, 1.0 / 255.0))));
 }
@@ -82,12 +82,12 @@ void main() {
             int axis = params.directions[j].offset.w != 0 ? -1 : (offset.x != 0 ? 0 : (offset.y != 0 ? 1 : 2));
             uint units = uint(t * 4095.0 + 0.5);
             if (hasSelf) {
-                shut(self, cells, j, t, colour);
+                blockLink(self, cells, j, t, colour);
                 if (axis >= 0) atomicMax(links[(kLpvNearest + 2u * uint(axis)) * cells + self], (4096u - max(units, 1u)) << 20u | packedNormal);
             }
             if (!isInside(to)) continue;
             uint other = cellIndex(to);
-            shut(other, cells, 25u - j, 1.0 - t, colour);
+            blockLink(other, cells, 25u - j, 1.0 - t, colour);
             if (axis >= 0) atomicMax(links[(kLpvNearest + 2u * uint(axis) + 1u) * cells + other], (4096u - max(4095u - units, 1u)) << 20u | packedNormal);
         }
     }

@@ -28,10 +28,10 @@ void main() {
         uint blocked = links[kLpvBlocked * cells + self];
         for (uint j = 0u; j < kLpvDirections; ++j) {
             ivec3 to = at + params.directions[j].offset.xyz;
-            bool shut = (blocked & (1u << j)) != 0u;
-            if (!shut && wrapCell(to)) continue;
+            bool atSurface = (blocked & (1u << j)) != 0u;
+            if (!atSurface && wrapCell(to)) continue;
             float power = dot(printedFlux(self, cells, j), vec3(kLpvOne * transfer.harmonics[j].x));
-            values[shut ? 6 : 5] += power;
+            values[atSurface ? 6 : 5] += power;
         }
     }
     leaveSums(values);
