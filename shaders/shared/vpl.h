@@ -40,8 +40,8 @@ struct VplParams {
     uint lightCount;
     uint walkCount;
     uint
-        classes; // interleaved subsets: walks with equal number modulo this are gathered at one point of a ray; 1: all
-    uint surfaceClasses; // the same for a surface
+        subsets; // interleaved subsets: walks with equal number modulo this are gathered at one point of a ray; 1: all
+    uint surfaceSubsets; // the same for a surface
     uint mapSide;        // texels along an edge of a visibility map; 0: no occlusion
     uint compensation;   // kVplClamped and so on
     uint lightsOfScene;  // that compensation gathers

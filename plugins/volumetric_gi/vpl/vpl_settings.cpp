@@ -20,10 +20,10 @@ const SettingDesc kVplSettings[] = {
         VplSettings, renewed, "gi.vpl.renewed", "Walks renewed per frame", "", 0, 65536, 0,
         "After a change of lights or media, traces this many walks again in each frame; indirect light lags behind until all are renewed. 0 renews all at once. Turns off candidates."),
     TYNDALL_INT(
-        VplSettings, classes, "gi.vpl.classes", "Interleaved subsets", "", 1, 1024, 8,
+        VplSettings, subsets, "gi.vpl.classes", "Interleaved subsets", "", 1, 1024, 8,
         "A point on a ray through media gathers one of this many subsets of the walks, the next point another. More are faster and noisier."),
     TYNDALL_INT(
-        VplSettings, surfaceClasses, "gi.vpl.surfaceClasses", "Subsets on surfaces", "", 1, 1024, 1,
+        VplSettings, surfaceSubsets, "gi.vpl.surfaceClasses", "Subsets on surfaces", "", 1, 1024, 1,
         "A surface point gathers one of this many subsets of the walks, its neighbours others. More are faster and noisier; 1 gathers all."),
     TYNDALL_ENUM(
         VplSettings, maps, "gi.vpl.maps", "Visibility maps from", kMapsNames, 0,

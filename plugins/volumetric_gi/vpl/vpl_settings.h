@@ -13,7 +13,7 @@ constexpr int32_t kVplMapsOfRays = 0, kVplMapsOfPoints = 1;
 
 struct VplSettings {
     int32_t walks, candidates, renewed;
-    int32_t classes, surfaceClasses;
+    int32_t subsets, surfaceSubsets;
     int32_t maps, points; // maps: kVplMapsOfRays …
     int32_t mapSide, depthSide;
     int32_t samples;

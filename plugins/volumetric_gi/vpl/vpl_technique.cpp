@@ -289,13 +289,13 @@ VplGather VplTechnique::gather(const plugin::FrameInputs& inputs) const {
         if (medium.isGrid()) grids.include(medium.bounds());
     const double rounds =
         roundsOfLight(inputs.media, !grids.empty(), scene_) * double(params.lightCount);
-    const auto classes = [&](int32_t wanted, double points) {
+    const auto subsets = [&](int32_t wanted, double points) {
         const double least = rounds * points / kMostRounds;
         return uint32_t(std::clamp(std::max(double(wanted), std::ceil(least)), 1.0,
                                    double(std::max(params.walkCount, 1u))));
     };
-    params.classes = classes(used_.classes, 2 * double(used_.samples)); // with compensation
-    params.surfaceClasses = classes(used_.surfaceClasses, 1);
+    params.subsets = subsets(used_.subsets, 2 * double(used_.samples)); // with compensation
+    params.surfaceSubsets = subsets(used_.surfaceSubsets, 1);
     params.mapSide = maps_.empty() && points_.points.empty() ? 0 : uint32_t(used_.mapSide);
     setClamps(inputs, params);
     params.lost = used_.show == int32_t(gpu::kVplShowLost) ? 1 : 0;

@@ -26,19 +26,19 @@ vec3 lightInMedium(uint light, vec3 position, vec3 direction, Segment s, float c
 /// Of the lights that count towards `terms`. One loop over all lights of the subset's walks: neighbouring invocations gather other subsets, and with one loop for each walk they would wait for the longest walk each time.
 vec3 walksInMedium(uint number, vec3 position, vec3 direction, Segment s, float clampSquared, uint terms) {
     vec3 sum = vec3(0.0);
-    uint walk = number % vpl.classes;
+    uint walk = number % vpl.subsets;
     uint light = 0u;
     uint end = 0u; // of the walk's lights, of which there is at least one
     while (light < end || walk < vpl.walkCount) {
         if (light == end) {
             light = vplWalks[walk];
             end = vplWalks[walk + 1u];
-            walk += vpl.classes;
+            walk += vpl.subsets;
         }
         if (vplCounts(light, terms)) sum += lightInMedium(light, position, direction, s, clampSquared);
         ++light;
     }
-    return sum * float(vpl.classes);
+    return sum * float(vpl.subsets);
 }
 
 /// The lights that count at a point whose light media scatter on to a receiver for which `terms` count.

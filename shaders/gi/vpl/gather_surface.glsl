@@ -61,7 +61,7 @@ SurfaceLight gatherSurface(Receiver r, uint number, uint stride, uvec2 pixel) {
         Segment there;
         vec3 near = vec3(0.0);
         if (drawNearPoint(r.position, direction, reach, noise.w, t, there)) {
-            uint number = uint(u.z * float(vpl.classes));
+            uint number = uint(u.z * float(vpl.subsets));
             near = walksInMedium(number, r.position + direction * t, direction, there, relaxedClampSquared(widest), vplTermsOneStepOn(vpl.surfaceTerms)); // not `reach`, which is 0 for grazing directions
             if ((vpl.surfaceTerms & (1u << kVplOfMedia)) != 0u) near += segmentInScatter(Ray(r.position, direction), there, vpl.lightsOfScene, noise.xyz, number);
             near *= nearPointWeight(r.position, direction, reach, t);

@@ -102,12 +102,12 @@ vec3 lightScatteredAlong(Ray ray, float distance, uvec2 pixel) {
     while (nextSegment(ray, march, s)) total += importanceOf(s, march.before);
     if (!(total > 0.0)) return sum;
 
-    uint number = uint(pixelNoise(pixel, 21u) * float(vpl.classes));
+    uint number = uint(pixelNoise(pixel, 21u) * float(vpl.subsets));
     // Along the segment; of the compensating vertex: class, distance; direction, medium.
     vec4 random = pixelRandom(pixel, 12u);
     float noise = random.w;
     vec4 u = pixelRandom(pixel, 15u);
-    uint other = uint(pixelRandom(pixel, 16u).x * float(vpl.classes));
+    uint other = uint(pixelRandom(pixel, 16u).x * float(vpl.subsets));
     float passed = pixelNoise(pixel, 28u); // in units of a sample: one is taken wherever this reaches a whole number
     float perSample = float(vpl.samples) / total;
     // Sample by sample, so that invocations side by side gather together however their segments lie.

@@ -12,8 +12,8 @@ layout(rgba32f) writeonly uniform image2D surfaceLight; // three parts; or nits
 SurfaceLight lightAt(ivec2 pixel, uvec2 number, out Receiver r) {
     SurfaceLight light = kDark;
     if (!receiverAt(pixel, vpl.leastRoughness, r)) return light;
-    uint first = uint(pixelNoise(number, 20u) * float(vpl.surfaceClasses)) % vpl.surfaceClasses;
-    return gatherSurface(r, first, vpl.surfaceClasses, number);
+    uint first = uint(pixelNoise(number, 20u) * float(vpl.surfaceSubsets)) % vpl.surfaceSubsets;
+    return gatherSurface(r, first, vpl.surfaceSubsets, number);
 }
 
 void main() {
