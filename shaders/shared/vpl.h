@@ -58,7 +58,7 @@ struct VplParams {
     uint mediaInView; // 0: no medium is in view
     uint lost;        // 1: lights give only the light that clamping removes
     float mediumClampSquared; // m²: 1/b in the content from surface to medium
-    uint nearLight; // kVplNearSurfaces and so on: light of compensation paths is in `VplNear`
+    uint pathLight; // kVplPathsOnSurfaces and so on: light of compensation paths is in `VplPathLight`
     // Which lights count on surfaces and in media, a bit for each of kVplOfSurfaces and so on: each is the light of one term there.
     uint surfaceTerms, mediaTerms;
     uint upToFreePath; // 1: in a medium the clamp distance is at most the free path there
@@ -69,8 +69,8 @@ TYNDALL_CONST uint kVplOfSurfaces = 0u, kVplOfMedia = 1u;           // LSSE, LSV
 TYNDALL_CONST uint kVplLaterOfSurfaces = 2u, kVplLaterOfMedia = 3u; // LXSSE, LXSVE; LXVSE, LXVVE
 TYNDALL_CONST uint kVplAllTerms = 15u;
 
-TYNDALL_CONST uint kVplNearSurfaces = 1u;
-TYNDALL_CONST uint kVplNearMedia = 2u;
+TYNDALL_CONST uint kVplPathsOnSurfaces = 1u;
+TYNDALL_CONST uint kVplPathsInMedia = 2u;
 
 struct VplShowParams {
     uint what;                                    // kVplShowLights and so on

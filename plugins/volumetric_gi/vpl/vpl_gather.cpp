@@ -88,7 +88,7 @@ fg::TextureHandle addMarch(fg::FrameGraph& graph, const plugin::FrameInputs& inp
                     return builder.skip("no medium in view");
                 declare(builder, data.gather, inputs, lights, gather, stage, gather.mediaFactor);
                 if (stage != MarchStage::Spread)
-                    data.gather.lights.nearMedia = builder.read(lights.nearMedia);
+                    data.gather.lights.pathsInMedia = builder.read(lights.pathsInMedia);
                 data.march = declareLightMarch(builder, data.gather.march, inputs.transmittance,
                                                before, kMarchNames);
             },
@@ -98,7 +98,7 @@ fg::TextureHandle addMarch(fg::FrameGraph& graph, const plugin::FrameInputs& inp
                 auto command =
                     spreads ? context.compute("gi/vpl/upsample.comp")
                             : begin(from, context, "gi/vpl/march.comp", from.params.compensation);
-                if (!spreads) command.bind("VplNear", from.lights.nearMedia);
+                if (!spreads) command.bind("VplPathLight", from.lights.pathsInMedia);
                 bindLightMarch(command, data.march).dispatchOver(data.march.light);
             })
         .march.light;
@@ -205,8 +205,8 @@ VplBuffers addVplUpload(fg::FrameGraph& graph, const plugin::FrameInputs& inputs
     buffers.lights = add("gi.vpl.lights", upload.set->lights, upload.lightsKey);
     buffers.walks = add("gi.vpl.walks", upload.set->walks, upload.mapsKey);
     buffers.traced = upload.traced;
-    buffers.nearSurfaces = add("gi.vpl.nearSurfaces", *upload.nearSurfaces, upload.nearKey);
-    buffers.nearMedia = add("gi.vpl.nearMedia", *upload.nearMedia, upload.nearKey);
+    buffers.pathsOnSurfaces = add("gi.vpl.nearSurfaces", *upload.pathsOnSurfaces, upload.pathsKey);
+    buffers.pathsInMedia = add("gi.vpl.nearMedia", *upload.pathsInMedia, upload.pathsKey);
     if (upload.points->points.empty()) {
         buffers.maps = add("gi.vpl.maps", *upload.maps, upload.mapsKey);
     } else {
@@ -257,7 +257,7 @@ fg::TextureHandle addVplSurfaces(fg::FrameGraph& graph, const plugin::FrameInput
                             gather.surfaceFactor);
                     data.gbuffer = readGBuffer(builder, inputs.gbuffer);
                     data.before = builder.read(squares);
-                    data.lights.nearSurfaces = builder.read(lights.nearSurfaces);
+                    data.lights.pathsOnSurfaces = builder.read(lights.pathsOnSurfaces);
                     if (inputs.transmittance)
                         data.transmittance = builder.read(inputs.transmittance);
                     data.result =
@@ -268,7 +268,7 @@ fg::TextureHandle addVplSurfaces(fg::FrameGraph& graph, const plugin::FrameInput
                     bindSurfaces(command, data)
                         .params(data.params, "Vpl")
                         .bind("squares", data.before)
-                        .bind("VplNear", data.lights.nearSurfaces)
+                        .bind("VplPathLight", data.lights.pathsOnSurfaces)
                         .bind("surfaceRadiance", data.result)
                         .bind("transmittance",
                               data.transmittance ? data.transmittance : data.before)

@@ -12,7 +12,7 @@ struct VplBuffers {
     fg::BufferHandle lights, walks, maps;
     TracedBuffers traced;
     fg::BufferHandle depths;                  // optical depth of grids; null: no grids
-    fg::BufferHandle nearSurfaces, nearMedia; // CompensationLight
+    fg::BufferHandle pathsOnSurfaces, pathsInMedia; // CompensationLight
 };
 
 /// Declares that a pass reads them; the result is what bindVpls() takes.
@@ -29,14 +29,14 @@ Command& bindVpls(Command& command, const VplBuffers& buffers, const gpu::VplPar
         .bind("VplDepths", buffers.depths);
 }
 
-/// Data to upload; they must live until the frame has been executed. `lightsKey`, `mapsKey`, `nearKey`: of its content.
+/// Data to upload; they must live until the frame has been executed. `lightsKey`, `mapsKey`, `pathsKey`: of its content.
 struct VplUpload {
     const VplSet* set = nullptr;
     const std::vector<uint32_t>* maps = nullptr; // maps by rays
     const SurfacePoints* points = nullptr;       // not empty: maps are splatted from them
     TracedBuffers traced;
-    const std::vector<vec4>*nearSurfaces = nullptr, *nearMedia = nullptr; // empty: no paths
-    uint64_t lightsKey = 0, mapsKey = 0, nearKey = 0;
+    const std::vector<vec4>*pathsOnSurfaces = nullptr, *pathsInMedia = nullptr; // empty: no paths
+    uint64_t lightsKey = 0, mapsKey = 0, pathsKey = 0;
 };
 
 /// How lights are gathered.

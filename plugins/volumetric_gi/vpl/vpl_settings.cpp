@@ -45,7 +45,7 @@ const SettingDesc kVplSettings[] = {
         2,
         "Light removed by clamping: left out (clamped), estimated as if light were even (closed), or gathered at a point near by (traced, slower)."),
     TYNDALL_INT(
-        VplSettings, nearPaths, "gi.vpl.nearPaths", "Compensation paths", "", 0, 1024, 1,
+        VplSettings, compensationPaths, "gi.vpl.nearPaths", "Compensation paths", "", 0, 1024, 1,
         "Processor paths for each square of surfaces and each ray that add light which traced compensation lacks; in averaged frames alone. More are less noisy and slower; 0 leaves it out."),
     TYNDALL_ENUM(
         VplSettings, march, "gi.vpl.march", "March resolution", kMarchNames, 1,

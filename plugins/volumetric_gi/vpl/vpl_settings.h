@@ -17,7 +17,7 @@ struct VplSettings {
     int32_t maps, points; // maps: kVplMapsOfRays …
     int32_t mapSide, depthSide;
     int32_t samples;
-    int32_t nearPaths;
+    int32_t compensationPaths;
     int32_t compensation;    // kVplClamped and so on
     int32_t march, surfaces; // log2 of pixels along an edge of the squares that gather once
     float clamp, surfaceClamp;

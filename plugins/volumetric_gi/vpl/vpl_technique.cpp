@@ -94,7 +94,7 @@ uint32_t termBits(TermSet given, const Term (&terms)[4]) {
 VplSettings asInThePaper(VplSettings settings) {
     settings.candidates = 1;
     settings.surfaceClamp = settings.clamp;
-    settings.nearPaths = 0;
+    settings.compensationPaths = 0;
     settings.incremental = false;
     return settings;
 }
@@ -213,7 +213,7 @@ void VplTechnique::choose(const plugin::FrameInputs& inputs, const WalkOrder& or
 
 /// Compensation paths on the processor: in averaged frames alone, because they are noisy. Not if walks go through proxy media.
 bool VplTechnique::followsWhatIsMissed(const plugin::FrameInputs& inputs) const {
-    return used_.nearPaths > 0 && std::max(used_.clamp, used_.surfaceClamp) > 0 &&
+    return used_.compensationPaths > 0 && std::max(used_.clamp, used_.surfaceClamp) > 0 &&
            used_.fromSurfaces && used_.fromMedia &&
            used_.compensation == int32_t(gpu::kVplTraced) &&
            used_.show != int32_t(gpu::kVplShowLost) && converges(inputs) && !scene_.usesProxies();
@@ -221,19 +221,19 @@ bool VplTechnique::followsWhatIsMissed(const plugin::FrameInputs& inputs) const 
 
 void VplTechnique::makeNear(const plugin::FrameInputs& inputs) {
     const gpu::VplParams& params = gather_.params;
-    if (!near_.onSurfaces.empty() || !near_.inMedia.empty() || params.nearLight != 0)
+    if (!pathLight_.onSurfaces.empty() || !pathLight_.inMedia.empty() || params.pathLight != 0)
         ++nearVersion_;
-    near_ = {};
-    if (params.nearLight == 0) return;
+    pathLight_ = {};
+    if (params.pathLight == 0) return;
     const auto metres = [](float squared) { return std::sqrt(double(squared)); };
     CompensationOrder order;
     order.surfaceFactor = gather_.surfaceFactor;
     order.mediaFactor = gather_.mediaFactor;
-    order.paths = uint32_t(used_.nearPaths);
+    order.paths = uint32_t(used_.compensationPaths);
     order.first = inputs.view.data.frameIndex * order.paths;
     order.onSurfaces = (inputs.terms & kIndirectOnSurfaces) != 0;
     order.inMedia = (inputs.terms & ~kIndirectOnSurfaces) != 0 &&
-                    (params.nearLight & gpu::kVplNearMedia) != 0 && inputs.media.count > 0 &&
+                    (params.pathLight & gpu::kVplPathsInMedia) != 0 && inputs.media.count > 0 &&
                     inputs.transmittance; // else none is in view
     order.clamps = {metres(params.surfaceClampSquared), metres(params.clampSquared),
                     metres(params.mediumClampSquared), double(params.relaxed)};
@@ -247,7 +247,7 @@ void VplTechnique::makeNear(const plugin::FrameInputs& inputs) {
     }
     path.leastRoughness = double(params.leastRoughness);
     const Stopwatch watch(times_.near);
-    near_ = compensationLight(inputs.view.data, scene_.scene(), scene_.emission(), order);
+    pathLight_ = compensationLight(inputs.view.data, scene_.scene(), scene_.emission(), order);
 }
 
 /// Clamping distances, and what compensates for the clamped light.
@@ -263,12 +263,12 @@ void VplTechnique::setClamps(const plugin::FrameInputs& inputs, gpu::VplParams& 
     const double finer = std::pow(frames, 1.0 / 6);
     params.mediumClampSquared = squared(mean * double(used_.surfaceClamp));
     // Where paths compensate for it no light is lost, and the distance stays large for less noise.
-    params.nearLight = 0;
+    params.pathLight = 0;
     if (followsWhatIsMissed(inputs)) {
-        params.nearLight = gpu::kVplNearSurfaces;
-        if (inputs.kinds == kAllMedia) params.nearLight |= gpu::kVplNearMedia; // paths see all media
+        params.pathLight = gpu::kVplPathsOnSurfaces;
+        if (inputs.kinds == kAllMedia) params.pathLight |= gpu::kVplPathsInMedia; // paths see all media
     }
-    params.surfaceClampSquared = params.nearLight != 0
+    params.surfaceClampSquared = params.pathLight != 0
                                      ? squared(meanDistanceOf(set_.positions, scene_.content(), 1) *
                                                double(used_.surfaceClamp) / finer)
                                      : params.mediumClampSquared;
@@ -355,7 +355,7 @@ plugin::FrameOutputs VplTechnique::addPasses(fg::FrameGraph& graph,
     TracedBuffers traced = scene_.buffers(graph);
     if (settings_.mapSide == 0) traced.params.treeSize = 0;
     buffers_ = addVplUpload(graph, inputs,
-                            {&set_, &maps_, &points_, traced, &near_.onSurfaces, &near_.inMedia,
+                            {&set_, &maps_, &points_, traced, &pathLight_.onSurfaces, &pathLight_.inMedia,
                              lightsKey_, walksKey_, nearVersion_},
                             gather_.params);
     plugin::FrameOutputs outputs;
@@ -381,7 +381,7 @@ fg::BufferHandle VplTechnique::addStatistics(fg::FrameGraph& graph) {
                    times_.choice,
                    times_.maps,
                    times_.near,
-                   float(near_.nonFinite)};
+                   float(pathLight_.nonFinite)};
     struct Data {
         fg::BufferHandle values;
         const float* data;

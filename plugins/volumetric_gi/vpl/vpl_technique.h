@@ -51,7 +51,7 @@ private:
              nextTurn_ = 0;    // walks of an earlier scene; the next one to renew
     uint32_t walksTraced_ = 0; // in this frame
     uint64_t nearVersion_ = 0;
-    CompensationLight near_; // light of compensation paths
+    CompensationLight pathLight_; // light of compensation paths
     struct {
         float walks = 0, choice = 0, maps = 0, near = 0;
     } times_; // of this frame, milliseconds

@@ -4,17 +4,17 @@
 #include "gi/shared/march.glsl"
 #include "gi/vpl/scattered_light.glsl"
 
-layout(std430) readonly buffer VplNear { vec4 vplNear[]; }; // nits of compensation paths, by square
+layout(std430) readonly buffer VplPathLight { vec4 vplPathLight[]; }; // nits of compensation paths, by square
 
 /// Of the square of a pixel.
-vec3 nearLightOf(ivec2 pixel, ivec2 size) {
-    if ((vpl.nearLight & kVplNearMedia) == 0u) return vec3(0.0);
+vec3 pathLightOf(ivec2 pixel, ivec2 size) {
+    if ((vpl.pathLight & kVplPathsInMedia) == 0u) return vec3(0.0);
     ivec2 square = pixel / int(params.factor);
     int across = (size.x + int(params.factor) - 1) / int(params.factor);
-    return vplNear[square.y * across + square.x].rgb;
+    return vplPathLight[square.y * across + square.x].rgb;
 }
 
 vec3 mediaLight(Ray ray, float distance, ivec2 pixel, uvec2 number) {
     marchedMedia = params.media;
-    return lightScatteredAlong(ray, distance, number) + nearLightOf(pixel, textureSize(depth, 0));
+    return lightScatteredAlong(ray, distance, number) + pathLightOf(pixel, textureSize(depth, 0));
 }

@@ -9,7 +9,7 @@ layout(local_size_x = 8, local_size_y = 8) in;
 layout(std140) uniform Params { MarchParams params; };
 uniform sampler2D squares; // the parts of SurfaceLight side by side
 uniform sampler2D transmittance; // of media in view
-layout(std430) readonly buffer VplNear { vec4 vplNear[]; }; // light of compensation paths, by square: nits over reflectance()
+layout(std430) readonly buffer VplPathLight { vec4 vplPathLight[]; }; // light of compensation paths, by square: nits over reflectance()
 layout(rgba32f) writeonly uniform image2D surfaceRadiance; // w: 0 where the pixel is left open
 
 const float kFar = 0.1; // of the distance to the eye: on a surface that is seen at a grazing angle neighbouring pixels lie far apart
@@ -33,7 +33,7 @@ float surfaceLikeness(Receiver r, Receiver other, float distance) {
     return f4 * f4 / (1.0 + offPlane / params.depthTolerance) / (1.0 + dot(way, way) / (kFar * kFar));
 }
 
-vec3 nearLightOf(ivec2 square, int squaresAcross) { return (vpl.nearLight & kVplNearSurfaces) != 0u ? vplNear[square.y * squaresAcross + square.x].rgb : vec3(0.0); }
+vec3 pathLightOf(ivec2 square, int squaresAcross) { return (vpl.pathLight & kVplPathsOnSurfaces) != 0u ? vplPathLight[square.y * squaresAcross + square.x].rgb : vec3(0.0); }
 
 void addSquare(inout SurfaceLight sum, ivec2 square, ivec2 right, float weight) {
     sum.diffuse += weight * texelFetch(squares, square, 0).rgb;
@@ -66,14 +66,14 @@ void main() {
             best = max(best, like);
             total += weight;
             addSquare(light, ray.coarse, right, weight);
-            near += weight * nearLightOf(ray.coarse, size.x);
+            near += weight * pathLightOf(ray.coarse, size.x);
         }
         total = max(total, 1e-30);
         near /= total;
         light = SurfaceLight(light.diffuse / total, light.specular / total, light.grazing / total);
     } else {
         addSquare(light, pixel, right, 1.0);
-        near = nearLightOf(pixel, size.x);
+        near = pathLightOf(pixel, size.x);
     }
     vec4 radiance = best < params.refineWeight ? vec4(0.0) : vec4(coloured(r, light), 1.0);
     radiance.rgb += near * reflectance(r);
