@@ -219,10 +219,10 @@ bool VplTechnique::followsWhatIsMissed(const plugin::FrameInputs& inputs) const 
            used_.show != int32_t(gpu::kVplShowLost) && converges(inputs) && !scene_.usesProxies();
 }
 
-void VplTechnique::makeNear(const plugin::FrameInputs& inputs) {
+void VplTechnique::makePathLight(const plugin::FrameInputs& inputs) {
     const gpu::VplParams& params = gather_.params;
     if (!pathLight_.onSurfaces.empty() || !pathLight_.inMedia.empty() || params.pathLight != 0)
-        ++nearVersion_;
+        ++pathLightVersion_;
     pathLight_ = {};
     if (params.pathLight == 0) return;
     const auto metres = [](float squared) { return std::sqrt(double(squared)); };
@@ -351,12 +351,12 @@ plugin::FrameOutputs VplTechnique::addPasses(fg::FrameGraph& graph,
     }
     makeLights(inputs);
     gather_ = gather(inputs);
-    makeNear(inputs);
+    makePathLight(inputs);
     TracedBuffers traced = scene_.buffers(graph);
     if (settings_.mapSide == 0) traced.params.treeSize = 0;
     buffers_ = addVplUpload(graph, inputs,
-                            {&set_, &maps_, &points_, traced, &pathLight_.onSurfaces, &pathLight_.inMedia,
-                             lightsKey_, walksKey_, nearVersion_},
+                            {&set_, &maps_, &points_, traced, &pathLight_.onSurfaces,
+                             &pathLight_.inMedia, lightsKey_, walksKey_, pathLightVersion_},
                             gather_.params);
     plugin::FrameOutputs outputs;
     if (inputs.terms & kIndirectOnSurfaces)

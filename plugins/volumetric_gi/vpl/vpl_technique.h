@@ -33,7 +33,7 @@ private:
     void renewSome(const WalkOrder& order, uint64_t lightsKey);
     void choose(const plugin::FrameInputs& inputs, const WalkOrder& order, uint32_t candidates);
     [[nodiscard]] bool followsWhatIsMissed(const plugin::FrameInputs& inputs) const;
-    void makeNear(const plugin::FrameInputs& inputs);
+    void makePathLight(const plugin::FrameInputs& inputs);
     void setClamps(const plugin::FrameInputs& inputs, gpu::VplParams& params) const;
     [[nodiscard]] VplGather gather(const plugin::FrameInputs& inputs) const;
 
@@ -50,7 +50,7 @@ private:
     uint32_t stale_ = 0,
              nextTurn_ = 0;    // walks of an earlier scene; the next one to renew
     uint32_t walksTraced_ = 0; // in this frame
-    uint64_t nearVersion_ = 0;
+    uint64_t pathLightVersion_ = 0;
     CompensationLight pathLight_; // light of compensation paths
     struct {
         float walks = 0, choice = 0, maps = 0, near = 0;
