@@ -137,7 +137,7 @@ eight times as many for fog of τ 8, four times as many for Sponza and the cloud
 
 - One frame is rendered at {FINE} pixels, and averages of 8x8 of them are compared (`tyndall compare --reduce`). A frame of {SIZE} has one sample a pixel: its aliased outlines alone are a squared error of 0.05.
 - Ultra is an average of frames of {SIZE} with new walks in each.
-- The reference's own noise is measured against a second reference with another seed. An error below it cannot be told from 0.
+- The reference's own noise is measured against a second reference with another seed. An error below it cannot be distinguished from 0.
 
 {errors}
 ## As printed and corrected

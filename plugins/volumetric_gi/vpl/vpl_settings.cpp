@@ -43,7 +43,7 @@ const SettingDesc kVplSettings[] = {
     TYNDALL_ENUM(
         VplSettings, compensation, "gi.vpl.compensation", "Bias compensation", kCompensationNames,
         2,
-        "Light removed by clamping: left out (clamped), estimated as if light were even (closed), or gathered at a point near by (traced, slower)."),
+        "Light removed by clamping: left out (clamped), estimated as if light were even (closed), or gathered at a point nearby (traced, slower)."),
     TYNDALL_INT(
         VplSettings, compensationPaths, "gi.vpl.nearPaths", "Compensation paths", "", 0, 1024, 1,
         "Processor paths for each square of surfaces and each ray that add light which traced compensation lacks; in averaged frames alone. More are less noisy and slower; 0 leaves it out."),
