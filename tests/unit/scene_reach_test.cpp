@@ -98,7 +98,9 @@ TEST(SceneReach, HowFarAbsorbingFogGoesOnDoesNotMatter) {
     };
     const SceneReach reach = reachIn(200);
     for (const double size : kRange)
-        if (size > 200) EXPECT_TRUE(reachIn(size) == reach) << size << " m of fog";
+        if (size > 200) {
+            EXPECT_TRUE(reachIn(size) == reach) << size << " m of fog";
+        }
     // Diffusion length 1/√(3·0.25·0.4) = 1.83 m: twelve of them to each side.
     EXPECT_GT(reach.surroundings.extent().x, 2 * 12 * 1.82);
     EXPECT_LT(reach.surroundings.extent().x, 2 * 12 * 1.83 + 4 + 11);
