@@ -36,8 +36,8 @@ test-slow: build ## run the slow tests: every file of the shared content, long s
 
 # The table of known results lies beside the repository, with the shared content. PRECISE=1: for the night, and the next one.
 TABLE ?= ../shared/reference/rt-tables.csv
-validation: build ## measure the reference against the table of known results, into docs/validation.md
-	@$(BUILD)/tests/reference_validation --table $(TABLE) --report docs/validation.md $(if $(PRECISE),--precise)
+validation: build ## measure the reference against the table of known results, into docs/measured/validation.md
+	@$(BUILD)/tests/reference_validation --table $(TABLE) --report docs/measured/validation.md $(if $(PRECISE),--precise)
 
 references: build ## make the reference pictures of the tests that are missing or stale (tests/images/references)
 	@tests/images/make_references.py $(BUILD)/bin/tyndall

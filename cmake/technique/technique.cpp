@@ -9,7 +9,7 @@ namespace {
 const SettingDesc k@Name@Settings[] = {
     TYNDALL_INT(
         @Name@Settings, directions, "@name@.directions", "Directions", "", 1, 32, 2,
-        "Directions in which each segment of a ray looks at the media around; more are less noisy and take longer."),
+        "Directions in which each segment of a ray samples the media around it. More are less noisy and slower."),
 };
 
 constexpr PresetEntry k@Name@Presets[] = {
@@ -31,7 +31,7 @@ const plugin::TechniqueInfo& @Name@Technique::info() const {
         .setCount = 0,
         .media = kAllMedia,
         .separatesMedia = 0,
-        .automatic = 0, // measure it first: docs/benchmarks.md
+        .automatic = 0, // measure it first: tests/bench/harness.py
         .cost = 2,
         .errorOnSurfaces = 1, // it has no light for them
         .errorInMedia = 0.12f};

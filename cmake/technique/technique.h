@@ -1,6 +1,6 @@
 #pragma once
 // LVVE, light that media scatter twice, from light that they scatter once: around each point of the eye's ray the media are taken
-// to be lit as they are there. docs/techniques/@name@.md tells when that is right.
+// to be lit as they are there. docs/techniques/@name@.md says when that is accurate.
 
 #include "volumetric_gi/shared/gi_technique.h"
 

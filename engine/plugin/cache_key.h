@@ -1,5 +1,5 @@
 #pragma once
-// What a cached result follows from, as one number: for Builder::cacheBy(), and for whatever is kept while nothing has changed.
+// Keys of cached results: one number for everything that a result depends on, for Builder::cacheBy() and other caches.
 
 #include <bit>
 #include <cmath>
@@ -44,8 +44,8 @@ inline uint64_t mixKey(uint64_t key, std::span<const std::byte> bytes) {
     return fg::hashName({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, key);
 }
 
-/// Of all values, in this order: versions, settings, numbers, vectors, matrices, boxes, bytes, other keys. Two lists that differ have the same key with a
-/// chance of 2^-64. Not for random numbers, nor for files (framegraph/hash.h).
+/// Of all values, in this order: versions, settings, numbers, vectors, matrices, boxes, bytes, other keys. Two different lists have the same key with a
+/// probability of 2^-64. Not for random numbers, nor for files (framegraph/hash.h).
 template <typename... Values> uint64_t cacheKey(const Values&... values) {
     uint64_t key = fg::kHashStart;
     ((key = mixKey(key, values)), ...);
@@ -61,7 +61,7 @@ inline uint64_t viewKey(const gpu::ViewData& view) {
                     view.size.x, view.size.y, view.flags);
 }
 
-/// Of what lights send, but for what the direct passes alone look at, which changes from frame to frame: a frame's own point on the light, and where its
+/// Of the lights, without the parts that only direct passes use and that change from frame to frame: a frame's own point on the light, and where its
 /// shadows and optical depths lie.
 inline uint64_t lightsKey(std::span<const gpu::LightData> lights) {
     uint64_t key = cacheKey(lights.size());

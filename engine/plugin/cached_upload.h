@@ -1,5 +1,5 @@
 #pragma once
-// Data of the processor in a buffer of the frame, uploaded where it has changed.
+// Processor data in a buffer of the frame, uploaded only when they have changed.
 
 #include <algorithm>
 #include <bit>

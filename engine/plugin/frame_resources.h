@@ -1,5 +1,5 @@
 #pragma once
-// What the frame's passes hand to each other: handles grouped by meaning, and how a command binds each group.
+// Resources that passes hand to each other: handles grouped by meaning, and how a command binds each group.
 // Plugins see exactly this.
 
 #include <cstdint>
@@ -31,7 +31,7 @@ struct LightResources {
     uint32_t lightCount = 0;      // with environment samples
     uint32_t sceneLightCount = 0; // without them
     bool softShadows =
-        true; // the define SOFT_SHADOWS: a shadow of this frame has a penumbra that is looked for
+        true; // the define SOFT_SHADOWS: a shadow of this frame has a penumbra
 };
 
 struct MediaResources {
@@ -44,13 +44,13 @@ struct MediaResources {
         opticalDepth; // light-space optical depth of the grids; null where no light has a volume
     fg::StaticTexture noOpticalDepth; // bound in its place then
     uint32_t count =
-        0; // media that can be seen or can shade what is seen; 0: bind nothing, include nothing
+        0; // media in view or between a light and the view; 0: bind nothing, include nothing
     uint32_t kinds = 0; // the define MEDIA_KINDS: kMediaShapes and so on in shared/medium.h
     uint32_t phaseGroups =
         1; // the define PHASE_GROUPS: 1 where one phase function is enough, else 8
 };
 
-/// The define MEDIA_KINDS for a shader; `towardsLights`: it asks for optical depth towards lights. Some combinations share
+/// The define MEDIA_KINDS for a shader; `towardsLights`: it needs optical depth towards lights. Some combinations share
 /// a variant, so that there are not too many.
 inline int32_t mediaKinds(const MediaResources& media, bool towardsLights) {
     uint32_t kinds = media.kinds;
@@ -68,7 +68,7 @@ template <typename Command> Command& bindView(Command& command, const ViewResour
     return command.params(view.data, "View");
 }
 
-/// Declares that a pass reads the surfaces, but for their emission: whoever includes shaders/common/receiver.glsl. The result is what
+/// Declares that a pass reads the surfaces without their emission, for shaders that include shaders/common/receiver.glsl. The result is what
 /// bindGBuffer() takes.
 inline GBuffer readGBuffer(fg::Builder& builder, const GBuffer& gbuffer) {
     return {builder.read(gbuffer.depth),
@@ -85,8 +85,8 @@ template <typename Command> Command& bindGBuffer(Command& command, const GBuffer
         .bind("gbufferMaterial", gbuffer.material);
 }
 
-/// Declares that a pass reads the media: whoever includes shaders/media/density.glsl, optical_depth.glsl or march.glsl. Only
-/// where `media.count` > 0. Keep what it returns in the pass's data, for bindMedia().
+/// Declares that a pass reads the media, for shaders that include shaders/media/density.glsl, optical_depth.glsl or march.glsl. Only
+/// if `media.count` > 0. Keep the result in the pass's data, for bindMedia().
 inline MediaResources readMedia(fg::Builder& builder, const MediaResources& media) {
     MediaResources read = media;
     read.media = builder.read(media.media);
@@ -97,7 +97,7 @@ inline MediaResources readMedia(fg::Builder& builder, const MediaResources& medi
     return read;
 }
 
-/// Binds everything that the media's shaders name. `media` comes from readMedia(). Names that a shader does not use are ignored.
+/// Binds everything that media shaders use. `media` comes from readMedia(). Names that a shader does not use are ignored.
 template <typename Command> Command& bindMedia(Command& command, const MediaResources& media) {
     command.bind("Media", media.media)
         .bind("Bricks", media.bricks)
@@ -125,7 +125,7 @@ Command& bindLightLists(Command& command, const LightResources& lights) {
 }
 
 /// For shaders that include lighting/light.glsl and lighting/shadow.glsl; `lights` from readLights(). Light-space optical depth
-/// is bound by who uses it.
+/// is bound separately.
 template <typename Command> Command& bindLights(Command& command, const LightResources& lights) {
     command.bind("Lights", lights.lights);
     if (lights.shadowViews) command.bind("ShadowViews", lights.shadowViews);

@@ -1,8 +1,8 @@
 #pragma once
 // All that a plugin includes. Pure-virtual interfaces with plain data across them: no GL names, no ImGui, no exceptions
-// and no standard containers cross the boundary, but for what is said where it stands: `const Scene*`, and the frame graph, whose inline
-// functions a plugin compiles. The handshake covers all of it: PluginDescriptor has the sizes of what crosses, and a hash of the text of every header
-// that crosses. A plugin is linked statically (from a list that CMake makes) or loaded as
+// and no standard containers cross the boundary. The exceptions are named where they occur: `const Scene*`, and the frame graph, whose inline
+// functions a plugin compiles. The handshake covers all of it: PluginDescriptor has the sizes of all types that cross, and a hash of the text of their
+// headers. A plugin is linked statically (from a list that CMake makes) or loaded as
 // a shared library by its C entry point; both use this header unchanged.
 
 #include <cstdint>
@@ -24,20 +24,20 @@ namespace tyndall::plugin {
 /// Raised by one whenever anything that crosses the boundary changes its meaning.
 inline constexpr uint32_t kAbiVersion = 5;
 
-/// What a technique says of itself: the name that `--gi` takes, what it computes, and what `auto` judges it by.
+/// Description of a technique: the name that `--gi` takes, what it computes, and the figures that `auto` chooses by.
 struct TechniqueInfo {
     const char* name;  // "octaves"
     const char* title; // "Octaves of multiple scattering"
     const char* help;  // one sentence
     TermSet claims;    // what it can compute, on surfaces (kIndirectOnSurfaces) and in media (the rest)
-    /// The sets of terms that the frame's plan may give it. One that mixes the light of several terms computes them together or not at all:
-    /// a part would be counted as what it is not. Null: any part of its claims.
+    /// The sets of terms that the frame's plan may give it. A technique that mixes several terms computes them together or not at all.
+    /// Null: any part of its claims.
     const TermSet* sets;
     uint32_t setCount;
     MediaSet media;         // kinds of media in which it computes its terms in media: kAllMedia, or some
     uint32_t separatesMedia; // 1: it leaves out the kinds that are not in FrameInputs::kinds
-    uint32_t automatic;      // 1: `auto` may choose it; 0: only who asks for it gets it
-    // Typical figures at medium quality, one frame, measured on software GL (docs/benchmarks.md).
+    uint32_t automatic;      // 1: `auto` may choose it; 0: only on request
+    // Typical figures at medium quality, one frame, measured on software GL (docs/measured).
     float cost;            // time of a frame over that of one with direct light alone
     float errorOnSurfaces; // relmse of its terms on surfaces, of those in media
     float errorInMedia;
@@ -49,7 +49,7 @@ struct PluginInfo {
     const char* help;
 };
 
-/// The host's side: what a plugin may ask for, valid from setup() to destruction.
+/// Services of the host for a plugin, valid from setup() to destruction.
 class Host {
 public:
     /// Adds a shader source under `path` ("gi/octaves/march.comp"); `text` is copied. A plugin's shaders may include the engine's.
@@ -66,7 +66,7 @@ struct SceneState {
     uint32_t lightCount, mediumCount;
     // Of surfaces and of media with an end, render space; minimum > maximum: nothing.
     float boundsMinimum[4], boundsMaximum[4];
-    // The same without the landscape that all else stands in (Scene::contentBounds).
+    // The same without the landscape around them (Scene::contentBounds).
     float contentMinimum[4], contentMaximum[4];
 };
 
@@ -90,7 +90,7 @@ struct SurfaceTriangles {
     uint32_t object; // of `Objects` (shared/object.h), which names the material
 };
 
-/// The scene's surfaces from anywhere: what reflective shadow maps and voxels are made of. Good until the frame has been executed.
+/// The scene's surfaces from any view, for reflective shadow maps and voxels. Good until the frame has been executed.
 class SurfaceDrawer {
 public:
     /// Of all opaque and alpha-tested surfaces.
@@ -107,7 +107,7 @@ protected:
     ~SurfaceDrawer() = default;
 };
 
-/// This frame, as far as a technique sees it.
+/// This frame, for a technique.
 struct FrameInputs {
     ViewResources view;
     GBuffer gbuffer;
@@ -120,13 +120,13 @@ struct FrameInputs {
     const gpu::LightData*
         lightData; // `lights.lightCount` of them, as on the GPU; until the frame is recorded
     SurfaceDrawer* surfaces;
-    /// As it is on the processor, for who traces rays there; until the frame is recorded. Not plain data: scene/scene.h is one of the headers that
+    /// The scene on the processor, for tracing rays; until the frame is recorded. Not plain data: scene/scene.h is one of the headers that
     /// the handshake's hash covers.
     const Scene* whole;
     double origin[3]; // the world's point that is render space's origin
     TermSet terms;    // that the plan gives to this technique: one of its sets
     MediaSet kinds;   // of media in which it computes its terms in media
-    bool statistics;  // somebody asks for FrameOutputs::statistics
+    bool statistics;  // FrameOutputs::statistics are wanted
     float whiteNits;  // luminance that the picture's exposure makes white, before the tone curve
 };
 
@@ -163,7 +163,7 @@ public:
     virtual SettingsTable settings() { return {}; }
     /// Adds this frame's passes, for `inputs.terms`. Called in frames in which the plan gives it terms.
     virtual FrameOutputs addPasses(fg::FrameGraph& graph, const FrameInputs& inputs) = 0;
-    /// Shows what it works with in the finished linear picture (`color`, view-sized RGBA32F nits), where its settings ask for it; returns
+    /// Draws its debug views into the finished linear picture (`color`, view-sized RGBA32F nits), if its settings select one; returns
     /// the new picture, or `color`. Called after addPasses() in the same frames.
     virtual fg::TextureHandle addDebugView(fg::FrameGraph&, const FrameInputs&,
                                            fg::TextureHandle color) {
@@ -177,7 +177,7 @@ protected:
 class Plugin {
 public:
     virtual const PluginInfo& info() const = 0;
-    /// Settings that are no technique's own.
+    /// Settings of the plugin itself.
     virtual SettingsTable settings() { return {}; }
     /// Once, before the first frame. Returns false and writes a sentence into `message` if it cannot run here:
     /// the renderer then goes on without it.

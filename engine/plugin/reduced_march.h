@@ -1,6 +1,6 @@
 #pragma once
-// Marches through the media that cost less than a ray for each pixel: one ray for a square of pixels, spread to all of them where it fits, and pixels of
-// which none does marched on their own. The shaders' side: shaders/media/nearest_rays.glsl, spread_rays.glsl and, for techniques, shaders/gi/shared.
+// Marches through the media at a reduced resolution: one ray for a square of pixels, upsampled where it fits; pixels that no ray fits
+// are marched on their own. The shaders' side: shaders/media/nearest_rays.glsl, spread_rays.glsl and, for techniques, shaders/gi/shared.
 
 #include "plugin/frame_resources.h"
 #include "shared/march.h"
@@ -13,7 +13,7 @@ enum class MarchStage {
     Fill,    // pixels that were left open
 };
 
-/// What the pass of any stage keeps in its data, for bindMarch().
+/// Data of the pass of any stage, for bindMarch().
 struct MarchPass {
     MarchStage stage = MarchStage::Squares;
     ViewResources view;
@@ -39,12 +39,12 @@ inline fg::TextureDesc marchPicture(const MarchPass& pass) {
                          (pass.view.height + factor - 1) / factor);
 }
 
-/// Binds what every stage's shader names; who marches binds the media beside it.
+/// Binds what every stage's shader uses; passes that march also bind the media.
 template <typename Command> Command& bindMarch(Command& command, const MarchPass& pass) {
     return bindView(command, pass.view).params(pass.params).bind("depth", pass.depth);
 }
 
-/// Adds the stages one after the other. `add(stage, before)` adds one and returns what it writes, of which `before` is the last stage's; nothing (false) where
+/// Adds the stages one after the other. `add(stage, before)` adds one and returns what it writes, of which `before` is the last stage's; nothing (false) if
 /// there is nothing to march. `fills`: spreading leaves pixels open to a third stage, in place of marching them itself.
 template <typename Images, typename Add>
 Images addMarchStages(int factor, bool fills, const Add& add) {
@@ -88,7 +88,7 @@ inline LightMarch declareLightMarch(fg::Builder& builder, const MarchPass& pass,
 template <typename Command> Command& bindLightMarch(Command& command, const LightMarch& march) {
     bindMarch(command, march.pass).bind("inScatter", march.light);
     if (march.transmittance) command.bind("transmittance", march.transmittance);
-    // Where nothing is before, it is not looked at, but has to be something.
+    // In the first stage the shader does not read it, but the binding must be valid.
     return command.bind("before", march.before ? march.before : march.pass.depth);
 }
 

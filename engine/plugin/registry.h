@@ -1,6 +1,6 @@
 #pragma once
 // Plugins of one renderer: built-in ones from a list that CMake makes, shared libraries by path. A plugin that does not fit
-// is refused with a sentence; one whose set-up fails is left out, and the renderer goes on without it.
+// is refused with a message; one whose set-up fails is left out, and the renderer goes on without it.
 
 #include <filesystem>
 #include <functional>
@@ -15,7 +15,7 @@
 
 namespace tyndall::plugin {
 
-/// A technique as the registry found it, and who computes it.
+/// A technique of the registry, and the plugin that computes it.
 struct RegisteredTechnique {
     tyndall::Technique description;
     Technique* technique;
@@ -34,7 +34,7 @@ public:
     /// Errors: no such file, no entry point, another ABI version, other headers or sizes, an incomplete description.
     Result<void> load(const std::filesystem::path& file);
 
-    /// Sets every plugin up with `host` and registers its settings. One that fails is dropped; the sentences are returned.
+    /// Sets every plugin up with `host` and registers its settings. One that fails is dropped; the messages are returned.
     std::vector<std::string> setup(Host& host, SettingsRegistry& settings);
 
     [[nodiscard]] size_t count() const { return plugins_.size(); }

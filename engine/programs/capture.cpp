@@ -35,7 +35,7 @@ void addOptions(CLI::App& command, CaptureOptions& options) {
     command.add_option("--time-step", options.timeStep, "Seconds from frame to frame (1/60)")
         ->type_name("SECONDS");
     command.add_flag("--converge", options.converge,
-                     "Average frames of the still scene until the noise is gone; --frames caps it");
+                     "Average frames of the still scene until the noise is gone, at most --frames");
     command
         .add_option(
             "--aov", options.aovs,
@@ -44,7 +44,8 @@ void addOptions(CLI::App& command, CaptureOptions& options) {
         ->delimiter(',')
         ->allow_extra_args(false);
     command.add_flag("--half", options.half, "Write the EXR in 16-bit instead of 32-bit floats");
-    command.add_option("--report", options.report, "Write what it took and what was done as JSON")
+    command
+        .add_option("--report", options.report, "Write a report as JSON: times, passes, statistics")
         ->type_name("FILE.json");
     command.add_option("--trace", options.trace, "Write Chrome trace events, for ui.perfetto.dev")
         ->type_name("FILE.json");

@@ -20,16 +20,16 @@ namespace {
 constexpr const char* kExamples =
     "Examples:\n"
     "  tyndall compare fast.exr reference.exr\n"
-    "      every metric; docs/compare.md says what each is good for\n"
+    "      every metric; docs/compare.md says when to look at each\n"
     "  tyndall compare fast.exr reference.exr --max-relmse 0.01 --max-energy-error 0.02 --json result.json\n"
-    "      for scripts: exit status 1 where a limit is not kept\n"
+    "      for scripts: exit status 1 if a limit is exceeded\n"
     "  tyndall compare fast.exr reference.exr --heatmap where.png --heatmap-metric signed\n"
     "      blue where fast.exr is too dark, red where it is too bright\n"
     "  tyndall compare fast.exr reference.exr --terms LVE,LSVE\n"
-    "      the sum of these layers on both sides: an error's share in a technique\n"
+    "      the sum of these layers in both files: the error of the technique that renders these terms\n"
     "  tyndall compare shot.png golden.png --min-ssim 0.98\n"
-    "      8-bit pictures as they are: psnr, ssim and flip alone\n"
-    "\nExit status: 0 done; 1 invalid values or a limit not kept; 2 the command line or a file is wrong.";
+    "      8-bit pictures: psnr, ssim and flip alone\n"
+    "\nExit status: 0 done; 1 invalid values or a limit exceeded; 2 the command line or a file is wrong.";
 
 struct CompareOptions {
     std::string image, reference;
@@ -241,7 +241,7 @@ void addOptions(CLI::App& command, CompareOptions& options) {
         ->type_name("NAME")
         ->excludes(terms);
     command.add_flag("--reduce", options.reduce,
-                     "A is so many times as large as B: compare averages of its pixels");
+                     "A is a whole number of times as large as B: compare averages of its pixels");
     command
         .add_option("--ev100", options.ev100,
                     "Exposure for psnr, ssim and flip (as in B's metadata, else A's, else 0)")
@@ -252,7 +252,7 @@ void addOptions(CLI::App& command, CompareOptions& options) {
                     "Tone curve for them: linear, aces, agx or neutral (agx)")
         ->type_name("NAME");
     command.add_option("--json", options.json, "Write the metrics as JSON")->type_name("FILE");
-    command.add_option("--heatmap", options.heatMap, "Write a picture of where the error is")
+    command.add_option("--heatmap", options.heatMap, "Write a picture of the error of each pixel")
         ->type_name("FILE.png");
     command
         .add_option("--heatmap-metric", options.heatMapMetric,
@@ -272,8 +272,8 @@ void addOptions(CLI::App& command, CompareOptions& options) {
 
 void addCompareCommand(CLI::App& program, Run& run) {
     auto options = std::make_shared<CompareOptions>();
-    CLI::App* command = program.add_subcommand(
-        "compare", "Tell how far an image is from a reference, in numbers and where");
+    CLI::App* command =
+        program.add_subcommand("compare", "Measure the difference of an image from a reference");
     addOptions(*command, *options);
     command->footer(kExamples);
     command->callback([options, &run] {

@@ -20,7 +20,7 @@ constexpr const char* kExamples =
     "Examples:\n"
     "  tyndall info                  versions, back ends that work here, limits of the driver\n"
     "  tyndall info --settings       every setting that --set takes, and what the presets set\n"
-    "  tyndall info smoke.vdb        what is in a file, what is understood, what is ignored";
+    "  tyndall info smoke.vdb        what is in a file, what is supported, what is ignored";
 
 struct InfoOptions {
     std::string file;
@@ -104,7 +104,7 @@ std::string settingLines(const SettingsRegistry& registry) {
 
 std::string techniqueLines(const Renderer& renderer) {
     std::string text =
-        "Techniques, as --gi takes them:\n  auto: the best that there is for the scene\n  none: direct light alone\n";
+        "Techniques, as --gi takes them:\n  auto: the best technique for the scene\n  none: direct light alone\n";
     for (const Technique& technique : renderer.techniques())
         text += fmt::format("  {}: {} ({}, computes {})\n", technique.name, technique.help,
                             technique.plugin, termNames(technique.claims));
@@ -138,7 +138,7 @@ Outcome runInfo(const InfoOptions& options) {
 void addInfoCommand(CLI::App& program, Run& run) {
     auto options = std::make_shared<InfoOptions>();
     CLI::App* command = program.add_subcommand(
-        "info", "Tell what this machine can do, which settings there are, or what is in a file");
+        "info", "Print what this machine supports, all settings, or what is in a file");
     command->add_option("FILE", options->file,
                         "A scene file, .gltf, .glb, .vdb, .nvdb, .exr or .hdr");
     command->add_flag("--settings", options->settings,

@@ -13,14 +13,14 @@ namespace {
 
 constexpr const char* kExamples =
     "Examples:\n"
-    "  tyndall reference smoke.scene.json -o truth.exr --size 320x180 --spp 1024\n"
-    "  tyndall reference smoke.scene.json -o truth.exr --target-error 1e-4 --seconds 3600\n"
+    "  tyndall reference smoke.scene.json -o reference.exr --size 320x180 --spp 1024\n"
+    "  tyndall reference smoke.scene.json -o reference.exr --target-error 1e-4 --seconds 3600\n"
     "      whichever is reached first\n"
-    "  tyndall reference smoke.scene.json -o truth.exr --spp 4096 --resume\n"
-    "      goes on where a run that was stopped or killed left off: give the other options as before\n"
+    "  tyndall reference smoke.scene.json -o reference.exr --spp 4096 --resume\n"
+    "      continues a run that was stopped or killed: give the other options as before\n"
     "  tyndall reference smoke.scene.json -o direct.exr --terms LE,LSE,LVE\n"
     "\nThe EXR holds the picture (R G B), each transport term and the variance of the mean. While it works, the picture so\n"
-    "far is in OUT.exr and all that is needed to go on in OUT.exr.resume, both saved about every half minute.";
+    "far is in OUT.exr and the state to continue from in OUT.exr.resume, both saved about every half minute.";
 
 void addOptions(CLI::App& command, ReferenceOptions& options) {
     addViewOptions(command, options);
@@ -29,18 +29,17 @@ void addOptions(CLI::App& command, ReferenceOptions& options) {
         .add_option("--spp", options.goals.spp,
                     "Samples a pixel (64, where no other goal is given)")
         ->type_name("N");
-    command.add_option("--seconds", options.goals.seconds, "Render for so long")
+    command.add_option("--seconds", options.goals.seconds, "Render for this long")
         ->type_name("SECONDS");
     command
         .add_option("--target-error", options.goals.targetError,
-                    "Render until the estimated relmse is no more")
+                    "Render until the estimated relmse is at most this")
         ->type_name("RELMSE");
     command
         .add_option("--max-depth", options.maxDepth, "Most scatterings of a path; 0: unlimited (0)")
         ->type_name("N");
     command.add_option("--threads", options.threads, "Threads; 0: one a core (0)")->type_name("N");
-    command.add_flag("--resume", options.resume,
-                     "Go on where the last run of this picture stopped");
+    command.add_flag("--resume", options.resume, "Continue the last run of this picture");
     command.add_flag("--keep-checkpoint", options.keep,
                      "Leave OUT.exr.resume when done, for more samples later");
     command.add_option("--checkpoint", options.checkpointSeconds, "Save at least this often (30)")
@@ -48,25 +47,24 @@ void addOptions(CLI::App& command, ReferenceOptions& options) {
     command
         .add_option(
             "--integrator", options.integrator,
-            "volume; simple: slow, short, without aiming at lights, so that lights without extent stay dark; or ir: virtual point lights of a walk for each "
-            "sample, and what their bound takes away")
+            "volume; simple: short and slow, without next-event estimation, so that lights without extent stay dark; or ir: unbiased virtual point lights (volume)")
         ->type_name("NAME");
     command
         .add_option(
             "--clamp", options.clamp,
-            "With ir: virtual lights nearer than this count as this near, and paths bring the rest (0.1)")
+            "With ir: clamping distance of virtual lights; the mean does not depend on it (0.1)")
         ->type_name("METRES");
     command
         .add_option("--transmittance", options.transmittance,
-                    "Of grids: ratio, unbiased estimates, or exact, slower (ratio)")
+                    "In grids: ratio (unbiased estimates) or exact (slower) (ratio)")
         ->type_name("NAME");
     command
         .add_option(
             "--cache", options.cache,
-            "Keep the picture in this folder, by scene, size and version, and take it from there when it is good enough")
+            "Keep pictures in this folder by scene, size and version, and reuse one that is good enough")
         ->type_name("FOLDER");
     command.add_flag("--half", options.half, "Write 16-bit floats");
-    command.add_option("--report", options.report, "Write what it took as JSON")->type_name("FILE");
+    command.add_option("--report", options.report, "Write a report as JSON")->type_name("FILE");
 }
 
 Outcome runReference(const ReferenceOptions& options, const GlobalOptions& global) {
@@ -84,7 +82,7 @@ Outcome runReference(const ReferenceOptions& options, const GlobalOptions& globa
 void addReferenceCommand(CLI::App& program, Run& run) {
     auto options = std::make_shared<ReferenceOptions>();
     CLI::App* command = program.add_subcommand(
-        "reference", "Trace a scene's paths: the picture to measure others by");
+        "reference", "Render the reference picture of a scene by path tracing");
     addOptions(*command, *options);
     command->footer(kExamples);
     command->callback([options, &run] {

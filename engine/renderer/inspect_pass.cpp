@@ -11,14 +11,15 @@ constexpr const char* kChannelNames[] = {"rgb", "r", "g", "b", "a"};
 
 const SettingDesc kInspectSettings[] = {
     TYNDALL_ENUM(InspectSettings, channel, "inspect.channel", "Channel", kChannelNames,
-                 InspectChannel::Rgb, "What of the resource is shown."),
+                 InspectChannel::Rgb, "Channels of the resource to show."),
     TYNDALL_INT(InspectSettings, slice, "inspect.slice", "Slice", "", 0, 4095, 0,
-                "Layer of an array, slice of a volume."),
-    TYNDALL_INT(InspectSettings, mip, "inspect.mip", "Level", "", 0, 15, 0, "Mip level."),
+                "Layer of an array, or slice of a volume, to show."),
+    TYNDALL_INT(InspectSettings, mip, "inspect.mip", "Mip level", "", 0, 15, 0,
+                "Mip level to show."),
     TYNDALL_FLOAT(InspectSettings, minimum, "inspect.minimum", "Black at", "", -1e9, 1e9, 0,
-                  "Value that is shown black."),
+                  "Value that is shown as black."),
     TYNDALL_FLOAT(InspectSettings, maximum, "inspect.maximum", "White at", "", -1e9, 1e9, 1,
-                  "Value that is shown white."),
+                  "Value that is shown as white."),
 };
 
 } // namespace

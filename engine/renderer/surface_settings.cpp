@@ -8,26 +8,26 @@ namespace {
 // clang-format off
 const SettingDesc kGBuffer[] = {
     TYNDALL_FLOAT(GBufferSettings, textureLodBias, "gbuffer.textureLodBias", "Texture detail bias", "levels", -4, 4, 0,
-                  "Added to the mip level of material textures: negative is sharper. Averaged frames always use the finest level."),
+                  "Added to the mip level of material textures: lower is sharper and may alias, higher is smoother. Averaged frames always use the finest level."),
     TYNDALL_FLOAT(GBufferSettings, anisotropy, "gbuffer.anisotropy", "Anisotropic filter", "x", 1, 16, 4,
-                  "How many times longer than wide the area is that a texture lookup averages on slanted surfaces; 1 is off."),
+                  "Largest ratio of length to width of the area that a texture lookup averages on slanted surfaces. Higher is sharper and slower; 1 is off."),
 };
 
 const SettingDesc kSurfaceLight[] = {
     TYNDALL_INT(SurfaceLightSettings, rectSamples, "lights.rectSamples", "Rect light samples", "", 1, 64, 4,
-                "Points of a rect light that its reflection and the media before it are computed from; its diffuse light is exact without."),
-    TYNDALL_INT(SurfaceLightSettings, environmentSamples, "environment.specularSamples", "Environment reflections", "", 0, 64, 8,
-                "Directions in which a smooth surface looks up the environment; 0 leaves it without reflections of the environment."),
-    TYNDALL_FLOAT(SurfaceLightSettings, mapRoughness, "environment.mapRoughness", "Roughness of the map", "", 0, 1, 0.5,
-                  "Up to this roughness the environment's reflection comes from its map, with its shadows estimated."),
-    TYNDALL_FLOAT(SurfaceLightSettings, lightsRoughness, "environment.lightsRoughness", "Roughness of the lights", "", 0, 1, 0.8,
-                  "From this roughness on the environment's reflection comes from its shadowed lights; in between both share."),
-    TYNDALL_FLOAT(SurfaceLightSettings, convergeMapRoughness, "environment.convergeMapRoughness", "Roughness of the map, averaged", "", 0, 1, 0.2,
-                  "The same for frames that are averaged, where many more lights are seen in all."),
-    TYNDALL_FLOAT(SurfaceLightSettings, convergeLightsRoughness, "environment.convergeLightsRoughness", "Roughness of the lights, averaged", "", 0, 1, 0.35,
-                  "The same for frames that are averaged, where many more lights are seen in all."),
+                "Points of a rect light for its reflection and for the media before it; its diffuse light is exact without them. More are smoother and slower."),
+    TYNDALL_INT(SurfaceLightSettings, environmentSamples, "environment.specularSamples", "Environment reflection samples", "", 0, 64, 8,
+                "Directions in which a smooth surface samples the environment. More are less noisy and slower; 0 removes reflections of the environment."),
+    TYNDALL_FLOAT(SurfaceLightSettings, mapRoughness, "environment.mapRoughness", "Map reflections below", "", 0, 1, 0.5,
+                  "Up to this roughness reflections come from the environment map, with estimated shadows. Raise it for less noise and less exact shadows."),
+    TYNDALL_FLOAT(SurfaceLightSettings, lightsRoughness, "environment.lightsRoughness", "Light reflections above", "", 0, 1, 0.8,
+                  "From this roughness on reflections come from the environment's shadowed lights; in between both are blended. Lower it for exact shadows; few lights then show as spots."),
+    TYNDALL_FLOAT(SurfaceLightSettings, convergeMapRoughness, "environment.convergeMapRoughness", "Map reflections below, averaged", "", 0, 1, 0.2,
+                  "environment.mapRoughness for averaged frames, which sample many more lights in all."),
+    TYNDALL_FLOAT(SurfaceLightSettings, convergeLightsRoughness, "environment.convergeLightsRoughness", "Light reflections above, averaged", "", 0, 1, 0.35,
+                  "environment.lightsRoughness for averaged frames, which sample many more lights in all."),
     TYNDALL_BOOL(SurfaceLightSettings, materialOcclusion, "environment.materialOcclusion", "Occlusion textures", true,
-                 "Whether occlusion textures darken the environment's light, as glTF has it for light from all around."),
+                 "Whether occlusion textures darken the light of the environment, as glTF defines it for ambient light."),
 };
 
 const PresetEntry kPresets[] = {

@@ -6,7 +6,7 @@ namespace {
 const SettingDesc kTechniqueSettings[] = {
     TYNDALL_TEXT(
         TechniqueSettings, technique, "gi.technique", "Technique", "auto",
-        "Who computes indirect light: auto, none, a technique's name, or TERM=NAME,... for single terms; --gi is short for it."),
+        "Computes indirect light: auto, none, a technique's name, or TERM=NAME,... for single terms; --gi is short for it."),
 };
 
 } // namespace

@@ -8,13 +8,13 @@ namespace {
 const SettingDesc kPostSettings[] = {
     TYNDALL_ENUM(PostSettings, curve, "post.toneCurve", "Tone curve", kToneCurveNames,
                  kDefaultToneCurve,
-                 "From light to display: linear (clipped), ACES, AgX or Khronos PBR Neutral."),
+                 "Maps light to the display: linear (clipped), ACES, AgX or Khronos PBR Neutral."),
     TYNDALL_BOOL(PostSettings, dither, "post.dither", "Dither", true,
-                 "Noise of one 8-bit step hides banding."),
+                 "Adds noise of one 8-bit step to hide banding in smooth gradients."),
     TYNDALL_FLOAT(
         PostSettings, exposureCompensation, "post.exposureCompensation", "Exposure compensation",
         "EV", -20, 20, 0,
-        "Brightens (positive) or darkens the display image; linear output does not change."),
+        "Brightens (positive) or darkens the displayed image, a factor of two for each EV; linear output does not change."),
 };
 
 } // namespace

@@ -48,7 +48,7 @@ Bsdf::Bsdf(const Surface& surface, const dvec3& toEye)
       toEye_(frame_.toLocal(toEye)), baseColor_(surface.baseColor), metallic_(surface.metallic),
       alpha_(std::max(surface.roughness * surface.roughness, kSmallestAlpha)),
       specular_(surface.specular) {
-    // By how bright the two parts are towards the eye; a lobe that is there is never left without samples.
+    // In proportion to the brightness of the two parts towards the eye; every lobe keeps some samples.
     const double weight = schlick(std::abs(toEye_.z));
     const double coat = specular_ * (kNormalReflectance + (1 - kNormalReflectance) * weight);
     const double metal = luminanceOf(baseColor_ + (1.0 - baseColor_) * weight);

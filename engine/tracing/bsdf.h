@@ -1,5 +1,5 @@
 #pragma once
-// glTF 2.0's metallic-roughness material (appendix B) with KHR_materials_specular, as the reference has it:
+// glTF 2.0's metallic-roughness material (appendix B) with KHR_materials_specular:
 //
 //   dielectric = mix(baseColor/π, V·D, specular·Schlick(0.04))   metal = Schlick(baseColor)·V·D
 //

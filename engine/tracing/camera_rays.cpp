@@ -26,7 +26,7 @@ CameraRays::CameraRay CameraRays::through(int x, int y, const dvec2& u) const {
                  py = (1 - 2 * (y + u.y) / height_) * halfHeight_;
     CameraRay result;
     if (parallel_) {
-        // Parallel rays start in the camera's plane, and see all from there.
+        // Parallel rays start in the camera's plane.
         result.ray = {px * right_ + py * up_, -back_};
         return result;
     }

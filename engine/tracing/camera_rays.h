@@ -17,7 +17,7 @@ public:
 
     struct CameraRay {
         Ray ray;
-        double nearest = 0; // where surfaces begin to be seen
+        double nearest = 0; // nearer surfaces are invisible
     };
     /// `u`: where in the pixel, [0,1)²; rows count from the top.
     [[nodiscard]] CameraRay through(int x, int y, const dvec2& u) const;

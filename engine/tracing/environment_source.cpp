@@ -59,7 +59,7 @@ void EnvironmentSource::makeTables() {
         double sum = 0;
         columnSums_.push_back(0);
         for (int x = 0; x < columns_; ++x) {
-            // Interpolation carries light half a texel over: a dark texel beside a bright one must be found, too.
+            // Interpolation spreads light by half a texel: a dark texel beside a bright one must be sampled, too.
             double weight = 0;
             for (int j = -1; j <= 1; ++j)
                 for (int i = -1; i <= 1; ++i) {

@@ -19,7 +19,7 @@ public:
     explicit EnvironmentSource(const Environment& environment);
 
     [[nodiscard]] bool black() const { return black_; }
-    /// The same radiance from everywhere: drawing directions from surfaces and phase functions is then better than any other.
+    /// The same radiance from all directions: then sampling surfaces and phase functions is best.
     [[nodiscard]] bool constant() const { return columns_ == 0; }
     /// Of light that travels against `direction`, bilinear between the image's pixels. Pixels that are not finite or
     /// negative count as 0.

@@ -105,7 +105,7 @@ GlowSample GlowSource::sample(double u0, const dvec2& u) const {
         int chosen = 0;
         for (int i = 0; i < kCells; ++i) {
             if (!(powers[i] > 0)) continue;
-            chosen = i; // the last that glows, should rounding leave some
+            chosen = i; // the last that glows, in case of rounding
             if (left < double(powers[i])) break;
             left -= double(powers[i]);
         }

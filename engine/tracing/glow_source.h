@@ -1,7 +1,7 @@
 #pragma once
-// The glow of media as a light to sample: points in the volume, drawn in proportion to what the cells around them send out. Rays that
-// happen to pass collect the same glow along their way; both are combined by multiple importance sampling point by point (as in Simon, Hanika,
-// Zirr and Dachsbacher 2017, "Line Integration for Rendering Heterogeneous Emissive Volumes"), which takes the inverse square away.
+// Emission of media as a light to sample: points in the volume, drawn in proportion to the emission of the cells around them. Rays that
+// pass collect the same emission along their length; MIS combines both point by point (Simon, Hanika,
+// Zirr and Dachsbacher 2017, "Line Integration for Rendering Heterogeneous Emissive Volumes"), which removes the inverse square.
 
 #include <vector>
 
@@ -23,12 +23,12 @@ public:
 
     [[nodiscard]] bool black() const { return !(power_ > 0); }
     [[nodiscard]] GlowSample sample(double u0, const dvec2& u) const;
-    /// With which sample() draws a point, per m³.
+    /// Density with which sample() draws a point, per m³.
     [[nodiscard]] double density(const dvec3& position) const;
     /// Candela, the mean of the channels, before extinction.
     [[nodiscard]] double intensity() const { return power_; }
     [[nodiscard]] const Bounds& bounds() const { return bounds_; }
-    /// Points per metre that a ray through glowing matter collects from, roughly: what a way found by chance counts as.
+    /// Roughly the points per metre at which a ray through a glowing medium collects emission: its density for MIS.
     [[nodiscard]] double pointsPerMetre() const { return pointsPerMetre_; }
 
 private:

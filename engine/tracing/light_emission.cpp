@@ -11,12 +11,12 @@ namespace {
 
 dvec3 uniformDirection(const dvec2& u) { return directionAround(1 - 2 * u.x, u.y); }
 
-/// Of light from infinity, so much goes to the content, where that is smaller than all there is; the rest to boxes around it, each so many times as wide.
+/// Part of light from infinity that is sampled towards the content, where that is smaller than the whole; the rest goes to boxes around it, each this many times as wide.
 constexpr double kToContent = 0.7;
 constexpr double kWider = 4;
 constexpr size_t kMostBoxes = 16;
 
-/// Of those the last is around everything: rays per area fall off with the squared distance from the content, as what light gives there does.
+/// The last box is around everything: rays per area fall off with the squared distance from the content, like the contribution of light there.
 std::vector<Bounds> boxesAround(const Bounds& content, const Bounds& whole) {
     if (whole.empty()) return {};
     std::vector<Bounds> boxes;
@@ -40,7 +40,7 @@ Bounds cubeAround(const Bounds& box) {
     return {box.centre() - half, box.centre() + half};
 }
 
-/// Evenly on the shadow that a box casts along a direction: a point of a face that the direction goes in by.
+/// Uniform on the shadow that a box casts along a direction: a point of a face by which the direction enters.
 dvec3 pointOnShadow(const Bounds& box, const dvec3& direction, const dvec2& u) {
     const dvec3 shadow = projectedFaces(box, direction);
     double target = u.x * (shadow.x + shadow.y + shadow.z);

@@ -1,5 +1,5 @@
 #pragma once
-// Light as it leaves its sources: rays drawn in proportion to power, from which walks through the scene start.
+// Emission of light: rays drawn in proportion to power, with which walks through the scene start.
 
 #include <vector>
 
@@ -7,20 +7,20 @@
 
 namespace tyndall::tracing {
 
-/// All lights of a scene as sources of rays. Light from infinity goes through the box around all surfaces and all media with an end. Where there is endless
-/// fog that box is as large as the ball around it, whatever the direction; what the fog outside of it scatters is left out, but not what it takes away.
+/// All lights of a scene as sources of rays. Light from infinity goes through the box around all surfaces and all media with an end. With endless
+/// fog the box is as large as the ball around it for all directions; scattering outside of it is left out, extinction is not.
 class LightEmission {
 public:
-    /// `scene` must outlive it. `content`: what most rays of light from infinity are sampled towards; empty: everything alike. `surroundings`: what such rays
-    /// are sampled towards at all; empty: everything.
+    /// `scene` must outlive it. `content`: most rays of light from infinity are sampled towards it; empty: towards everything. `surroundings`: all such rays
+    /// are sampled towards it; empty: towards everything.
     explicit LightEmission(const TracerScene& scene, const Bounds& content = {},
                            const Bounds& surroundings = {});
 
     [[nodiscard]] bool black() const { return !(sums_.back() > 0); }
-    /// Watts of all lights, the mean of the channels; bounds where textures, cones or windows dim them.
+    /// Watts of all lights, the mean of the channels; upper bounds where textures, cones or windows dim them.
     [[nodiscard]] double power() const { return sums_.back(); }
     [[nodiscard]] EmittedRay sample(Sampler& sampler) const;
-    /// What most rays are to meet; around all surfaces and media with an end, where nothing less was given.
+    /// What most rays are sampled towards; around all surfaces and media with an end, if nothing smaller was given.
     [[nodiscard]] const Bounds& content() const { return content_; }
 
 private:
@@ -29,7 +29,7 @@ private:
                                    double& area) const;
 
     const TracerScene& scene_;
-    Bounds whole_, near_, content_; // around everything, what rays are to meet, and what most are
+    Bounds whole_, near_, content_; // around everything, what rays are sampled towards, and what most rays are
     bool reachesBeyond_ = false;    // is `whole_` much larger than `near_`?
     std::vector<Bounds>
         boxes_; // that rays from infinity are sampled towards: content first, all last

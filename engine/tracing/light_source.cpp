@@ -178,8 +178,8 @@ LampSample LightSource::meet(const Ray& ray) const {
     return result;
 }
 
-/// Chances follow from it, and no light: emit() and sample() have formulas of their own. A spot counts with all that its rays could carry
-/// where they are drawn, its cone or a ball's whole sphere, so that no ray stands for more than the sum of these.
+/// Probabilities depend on it, light does not: emit() and sample() have formulas of their own. A spot counts with the most power of its rays
+/// where they are drawn, its cone or a ball's whole sphere, so that no ray represents more than the sum of these.
 double LightSource::power(double area) const {
     if (black_) return 0;
     const double mean = meanOf(power_);
@@ -217,7 +217,7 @@ double LightSource::importance(const dvec3& from) const {
     if (type_ == LightType::Directional) return luminanceOf(power_);
     const dvec3 way = centre_ - from;
     const double squared = glm::dot(way, way), distance = std::sqrt(squared);
-    // Within its own extent a light is no point any more.
+    // Inside its own extent a light is no longer a point.
     const double counted = std::max(squared, extent_ * extent_);
     if (type_ == LightType::Rect) {
         const double cosine = distance > extent_ ? -glm::dot(axis_, way) / distance : 1;

@@ -1,6 +1,6 @@
 #pragma once
-// One of the scene's lights as the reference sees it. Lights have no surface that could be seen or could block: a ball or a
-// rectangle shines along rays that pass through it, a point or a sun without a disc only along rays that are sampled towards it.
+// One of the scene's lights. Lights have no surface that is visible or blocks rays. A ball or a
+// rectangle gives light to rays that pass through it, a point or a sun without a disc only to rays that are sampled towards it.
 
 #include "tracing/ray.h"
 #include "scene/scene.h"
@@ -15,10 +15,10 @@ struct LampSample {
     double density = 0; // per steradian; of a light without extent: 1. 0: no light comes from there
 };
 
-/// KHR_lights_punctual: what takes the inverse square to 0 at the range; 1 for unbounded lights (range 0).
+/// KHR_lights_punctual: the window that brings the inverse square to 0 at the range; 1 for unbounded lights (range 0).
 [[nodiscard]] double rangeWindow(double range, double distance);
 
-/// A ray that some light sends out, with the power that it stands for.
+/// A ray that a light emits, with the power that it represents.
 struct EmittedRay {
     Ray ray;
     dvec3 power{0};       // watts: radiance · cosine / density of the ray; 0: nothing
@@ -38,7 +38,7 @@ public:
 
     [[nodiscard]] LampSample sample(const dvec3& from, const dvec2& u) const;
     /// Where the ray meets the light, if it does: distance, radiance, and the density with which sample() from the ray's
-    /// origin would have chosen this way; density 0: it does not. Always 0 for delta lights.
+    /// origin would have chosen this direction; density 0: it does not. Always 0 for delta lights.
     [[nodiscard]] LampSample meet(const Ray& ray) const;
 
     /// Roughly the luminance-weighted illuminance on a facing surface at `from`, shadows and media left out.

@@ -6,12 +6,12 @@
 namespace tyndall::tracing {
 namespace {
 
-/// Light that grazes a facet under a tilted shading normal would weigh without bound.
+/// Without a limit, light that grazes a facet under a tilted shading normal would have an unbounded weight.
 constexpr double kLeastCosine = 1e-3;
-/// Of what is scattered outside of the ball around the content, so much is sampled towards it.
+/// Part of the light scattered outside of the ball around the content that is sampled towards it.
 constexpr double kOnToContent = 0.5;
 
-/// What a shading normal makes of light that falls in along `travel`: its cosine over that of the facet (Veach 1997, 5.3).
+/// Correction of light arriving along `travel` for shading normals: its cosine over that of the facet (Veach 1997, 5.3).
 double tilt(const Surface& surface, const dvec3& direction) {
     const double facet = std::abs(glm::dot(surface.geometricNormal, direction)),
                  shading = std::abs(glm::dot(surface.normal, direction));

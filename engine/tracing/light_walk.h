@@ -8,7 +8,7 @@
 
 namespace tyndall::tracing {
 
-/// Where light of a walk is scattered.
+/// A vertex of a walk.
 struct WalkVertex {
     dvec3 position{0};
     dvec3 travel{0}; // unit, of the light that arrives
@@ -23,12 +23,12 @@ struct WalkVertex {
 
 struct WalkSettings {
     int longest = 10000; // vertices; walks that reach it are counted
-    // From the third vertex on a walk goes on with the chance of what it carries over what it started with, within these.
+    // From the third vertex on a walk continues with the probability of its power over its initial power, within these limits.
     double leastSurvival = 0.05, mostSurvival = 0.95;
 };
 
-/// Makes walks, one for each sampler. Keeps scratch memory: one for each thread. Outside of the ball around the emission's content, half of them are
-/// scattered on towards it: without that the rare walk that finds its way back from a landscape carries the power of square miles.
+/// Makes walks, one for each sampler. Keeps scratch memory: one for each thread. Outside of the ball around the emission's content, half of the
+/// scattered directions are sampled towards it. Otherwise the rare walk that returns from a landscape would carry the power of square kilometres.
 class LightWalker {
 public:
     LightWalker(const TracerScene& scene, const LightEmission& emission,
@@ -38,7 +38,7 @@ public:
           radius_(emission.content().empty() ? 0 : 0.5 * glm::length(emission.content().extent())),
           segment_(*scene.media) {}
 
-    /// The vertices of one walk, in order; what stood in `walk` is dropped.
+    /// The vertices of one walk, in order; replaces the contents of `walk`.
     void trace(Sampler& sampler, std::vector<WalkVertex>& walk);
     /// Of the walk traced last.
     [[nodiscard]] const EmittedRay& start() const { return start_; }
@@ -51,7 +51,7 @@ private:
         dvec3 axis{0, 0, 1}; // unit
         double versine = 0;  // 1 - cosine of half its angle; 0: none, the point is in the ball
         [[nodiscard]] dvec3 sample(const dvec2& u) const;
-        /// Of directions that are drawn by `own` or, with a chance of kOnToContent, from the cone: per steradian.
+        /// Density of directions drawn by `own` or, with probability kOnToContent, from the cone: per steradian.
         [[nodiscard]] double density(const dvec3& direction, double own) const;
     };
     [[nodiscard]] ContentCone contentConeFrom(const dvec3& position) const;
@@ -60,7 +60,7 @@ private:
         Ray ray;
         PathWeights weights;
         double started =
-            0; // what it began with, with the weights of directions towards the content
+            0; // initial power, with the weights of directions towards the content
     };
     bool begin(Sampler& sampler, Progress& progress);
     /// Follows the ray to the next vertex and draws the ray that leaves it; false: the walk ends, with or without the vertex.

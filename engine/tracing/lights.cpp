@@ -8,7 +8,7 @@
 namespace tyndall::tracing {
 namespace {
 
-/// Light that shadows and media make weaker than thought must still be found: each light gets this part of the chances.
+/// Estimates ignore shadows and media, so each light keeps this part of the probability.
 constexpr double kEvenPart = 0.1;
 
 dvec3 corner(const MeshInstance& instance, uint32_t triangle, size_t i) {
@@ -83,7 +83,7 @@ void Lights::choose(const dvec3& from, bool constantEnvironment, LightChoice& ch
         sum += weight;
         lit += weight > 0;
     }
-    // A lamp may light this point although its estimate is 0 (a spot's ball): all lamps keep a chance.
+    // A lamp may light this point although its estimate is 0 (a spot's ball): all lamps keep some probability.
     const size_t kept = std::max<size_t>(lit, lamps_.size());
     if (kept == 0) {
         choice.total_ = 0;
@@ -202,7 +202,7 @@ EmittedRay Lights::emitFromTriangle(double u0, const dvec2& where, const dvec2& 
     dvec3 normal = doubled * ((instance.mirrored ? -0.5 : 0.5) / area);
     dvec2 u = way;
     const double sides = instance.material->doubleSided ? 2 : 1;
-    if (sides > 1) { // one number tells the side and, stretched, the direction
+    if (sides > 1) { // one number chooses the side and, rescaled, the direction
         if (u.x >= 0.5) normal = -normal;
         u.x = std::min(2 * (u.x >= 0.5 ? u.x - 0.5 : u.x), 0x1.fffffffffffffp-1);
     }
@@ -242,7 +242,7 @@ double Lights::emitterDensity(uint32_t emitter, const dvec3& from, const dvec3& 
     const MeshInstance& instance = surfaces_.instances()[emitters_[emitter].instance];
     const dvec3 doubled = doubledArea(instance, emitters_[emitter].triangle), way = at - from;
     const double squared = glm::dot(way, way);
-    // chance / area · distance² / cosine, the area as it is seen: |doubled · way| / 2 / distance
+    // probability / area · distance² / cosine, with the projected area |doubled · way| / 2 / distance
     const double seen = 0.5 * std::abs(glm::dot(doubled, way)) / std::sqrt(squared);
     const double chance = (emitterSums_[emitter + 1] - emitterSums_[emitter]) / emitterSums_.back();
     return seen > 0 ? chance * squared / seen : 0;

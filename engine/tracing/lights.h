@@ -10,11 +10,11 @@
 
 namespace tyndall::tracing {
 
-/// A sample of any kind of light. Lights::sample() leaves the chance of choosing that light out of `density`.
+/// A sample of any kind of light. In Lights::sample() `density` does not include the probability of choosing that light.
 struct LightSample : LampSample {
     bool delta = false;   // no ray hits it
     bool shadowed = true; // surfaces block it
-    /// Of glowing media: radiance is per metre, density per steradian and metre, and a ray that passes meets so many points a metre.
+    /// Of glowing media: radiance is per metre, density per steradian and metre, and a ray that passes collects at this many points a metre.
     double pointsPerMetre = 1;
     bool valid() const { return density > 0 && maximumOf(radiance) > 0; }
 };
@@ -22,7 +22,7 @@ struct LightSample : LampSample {
 /// How likely each light is to be sampled, from a point or from along a piece of a ray.
 class LightChoice {
 public:
-    /// Of light number `light`; 0 where there is no light at all.
+    /// Of light number `light`; 0 if there is no light at all.
     [[nodiscard]] double chance(size_t light) const {
         return total_ > 0 ? weights_[light] / total_ : 0;
     }
@@ -51,17 +51,17 @@ public:
     [[nodiscard]] const EnvironmentSource& environment() const { return environment_; }
     [[nodiscard]] bool black() const;
 
-    /// From a point. `constantEnvironment`: whether to sample an environment that is the same all round.
+    /// From a point. `constantEnvironment`: whether to sample an environment that is the same in all directions.
     void choose(const dvec3& from, bool constantEnvironment, LightChoice& choice) const;
     /// From along [0,length] of the ray, a finite one.
     void chooseAlong(const Ray& ray, double length, LightChoice& choice) const;
-    /// Which light `u` picks, and u made fresh for other use.
+    /// Which light `u` picks, and u rescaled for another use.
     [[nodiscard]] static size_t pick(const LightChoice& choice, double& u);
-    /// A sample of light number `light` as seen from a point; its density without the chance of that light.
+    /// A sample of light number `light` as seen from a point; its density without the probability of that light.
     [[nodiscard]] LightSample sample(size_t light, const dvec3& from, double u0,
                                      const dvec2& u) const;
 
-    /// Watts that all glowing triangles send out, the mean of the channels; a bound where textures dim them.
+    /// Watts that all glowing triangles emit, the mean of the channels; an upper bound where textures dim them.
     [[nodiscard]] double emittedPower() const { return kPi * emitterSums_.back(); }
     /// A ray of one of them, drawn by that bound. CHECKs that there are any.
     [[nodiscard]] EmittedRay emitFromTriangle(double u0, const dvec2& where,
@@ -76,7 +76,7 @@ private:
     };
     void collectEmitters(SurfaceScene& surfaces);
     [[nodiscard]] LightSample sampleGlow(const dvec3& from, double u0, const dvec2& u) const;
-    /// Which triangle `u` picks, and a point of it.
+    /// The triangle that `u` picks, and a point of it.
     struct PointOfTriangle {
         size_t emitter = 0;
         RayHit hit;

@@ -46,7 +46,7 @@ dvec4 MaterialReader::sample(const TextureRef& ref, const VertexValues& vertex, 
         if (srgb) return dvec4(linear_[p[0]], linear_[p[1]], linear_[p[2]], p[3] / 255.0);
         return dvec4(p[0], p[1], p[2], p[3]) / 255.0;
     };
-    constexpr double kFarthest = 1e9; // coordinates beyond name no texel any more
+    constexpr double kFarthest = 1e9; // coordinates beyond have no texel
     const double x = std::clamp(at.x * image.width, -kFarthest, kFarthest),
                  y = std::clamp(at.y * image.height, -kFarthest, kFarthest);
     if (std::isnan(x) || std::isnan(y)) return texel(0, 0);

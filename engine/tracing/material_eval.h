@@ -1,5 +1,5 @@
 #pragma once
-// What a material is at a point of a surface: glTF's factors times its textures, at their finest level.
+// A material at a point of a surface: glTF's factors times its textures, at their finest level.
 
 #include <array>
 #include <vector>
@@ -9,7 +9,7 @@
 
 namespace tyndall::tracing {
 
-/// What a triangle has at a point, interpolated from its corners.
+/// Attributes of a triangle at a point, interpolated from its corners.
 struct VertexValues {
     std::array<dvec2, kMaxUvSets> uvs{};
     dvec4 color{1};

@@ -9,7 +9,7 @@
 namespace tyndall::tracing {
 namespace {
 
-/// Tentative collisions that a ray through the middle of glowing matter is to have, however thin it is.
+/// Tentative collisions of a ray through the middle of a glowing medium, however thin it is.
 constexpr double kEmissionCollisions = 8;
 
 dmat4 inverseOf(const dmat4& m) {
@@ -268,7 +268,7 @@ double MediumSource::gridIntegral(const dvec3& origin, const dvec3& direction,
         }
         t = stop;
         if (axisOut < 0) break;
-        if (constant) { // on to the cell behind the brick, wherever the ray leaves it
+        if (constant) { // to the cell behind the brick, wherever the ray leaves it
             p = origin + t * direction - dvec3(grid_->origin);
             ivec3 at = glm::clamp(ivec3(glm::floor(p)), b * kBrickCells,
                                   b * kBrickCells + kBrickCells - 1);

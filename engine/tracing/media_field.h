@@ -19,10 +19,10 @@ struct Interval {
     [[nodiscard]] bool empty() const { return !(end > begin); }
 };
 
-/// Above this many scale heights no fog is left, e⁻⁶⁰: free flight need not go on for ever.
+/// Above this many scale heights no fog is left, e⁻⁶⁰, so that free flight ends.
 inline constexpr double kHighestFog = 60;
 
-/// A grid's bricks with what bounds them.
+/// A grid's bricks with their bounds.
 struct BrickBounds {
     float minimum = 0, maximum = 0, mean = 0;
 };
@@ -41,11 +41,11 @@ public:
     /// Where along [0,length] the density may be more than 0.
     [[nodiscard]] Interval clip(const Ray& ray, double length) const;
     [[nodiscard]] double density(const dvec3& position) const;
-    /// Nits per metre that the medium sends out at a point where its density is this.
+    /// Nits per metre that the medium emits at a point of this density.
     [[nodiscard]] dvec3 emitted(const dvec3& position, double density) const;
     /// ∫ density dt over the interval of the ray, metres; in closed form, for grids exact cell by cell.
     [[nodiscard]] double densityIntegral(const Ray& ray, Interval interval) const;
-    /// Extinction that free flight pretends where the medium emits, so that thin fire is met often enough: per metre.
+    /// Additional majorant where the medium emits, so that thin fire has enough tentative collisions: per metre.
     [[nodiscard]] double emissionMajorant() const { return emissionMajorant_; }
     [[nodiscard]] double phaseValue(double oneMinusCosine) const;
     /// Cosine between the directions of travel before and after.
@@ -54,7 +54,7 @@ public:
     [[nodiscard]] double densestBound() const { return grid_ ? double(grid_->maximum) : 1; }
     /// Unbounded above and to the sides, with density 1 at most: Height.
     [[nodiscard]] bool isHeight() const { return kind_ == MediumKind::Height; }
-    /// There is always more of it.
+    /// It has no end in any direction.
     [[nodiscard]] bool endless() const {
         return kind_ == MediumKind::Everywhere || kind_ == MediumKind::Height;
     }
@@ -79,7 +79,7 @@ private:
     dmat4 localFromRay_{1}; // Box: the unit cube about 0; Sphere: the unit ball; Grid: index space
     dvec3 up_{0, 1, 0};
     double ground_ = 0,
-           scaleHeight_ = 1; // Height: up_·p = ground_ is where the density starts to fall
+           scaleHeight_ = 1; // Height: the density falls above up_·p = ground_
     std::shared_ptr<const BrickGrid> grid_, temperature_;
     dmat4 temperatureFromRay_{1};
     double temperatureScale_ = 0;
@@ -123,12 +123,12 @@ private:
 class MediaField {
 public:
     using Change = std::function<void(Medium&, dmat4& rayFromNode)>;
-    /// `origin`: the world's point that becomes the origin of ray space. `change`: what becomes of each medium before.
+    /// `origin`: the world's point that becomes the origin of ray space. `change`: is applied to each medium first.
     MediaField(const Scene& scene, const dvec3& origin, const Change& change = {});
 
     [[nodiscard]] bool empty() const { return media_.empty(); }
     [[nodiscard]] const std::vector<MediumSource>& media() const { return media_; }
-    /// Extinction is the same in all channels of each medium: free flight need not tell channels apart.
+    /// Extinction is the same in all channels of each medium: free flight need not distinguish channels.
     [[nodiscard]] bool grey() const { return grey_; }
     [[nodiscard]] bool scatters() const { return scatters_; }
     [[nodiscard]] bool emits() const { return emits_; }

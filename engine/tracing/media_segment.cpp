@@ -130,7 +130,7 @@ bool MediaSegment::extend() {
 void MediaSegment::addEmissionMajorants(SegmentPiece& piece) const {
     for (uint32_t i = 0; i < piece.partCount; ++i) {
         const MediumSource& medium = *parts_[piece.firstPart + i].medium;
-        // Matter without an end that glows and lets its light through would send infinitely much: it stays dark.
+        // An endless medium that glows without extinction would emit without limit: it stays dark.
         const bool ends = std::isfinite(piece.end) ||
                           std::min({piece.majorant.x, piece.majorant.y, piece.majorant.z}) > 0;
         if (medium.emits() && ends) piece.majorant += dvec3(medium.emissionMajorant());
@@ -158,7 +158,7 @@ MediaSegment::Flight MediaSegment::fly(Sampler& sampler, PathWeights& weights, M
     const int hero = weights.hero;
     double depth =
         -std::log1p(-sampler.next1()); // of the hero, left until the next tentative collision
-    // The hero's part of the attenuation is in the density of getting here; what channels differ by is in PathWeights::ratio.
+    // The hero's attenuation is in the density of this collision; differences of channels are in PathWeights::ratio.
     const auto attenuate = [&](const dvec3& majorant, double distance) {
         if (grey) return;
         for (int c = 0; c < 3; ++c) {

@@ -1,6 +1,6 @@
 #pragma once
-// What a piece of a path meets in the media: bounds and estimates for drawing points on it, the free flight of light along it,
-// and the part of light that gets through.
+// A segment of a path in the media: bounds and estimates for sampling points on it, free flight along it,
+// and its transmittance.
 
 #include <vector>
 
@@ -24,7 +24,7 @@ struct PathWeights {
     }
 };
 
-/// The media at one point: their coefficients added, their phase functions mixed by how much each scatters.
+/// The media at one point: their coefficients added, their phase functions mixed in proportion to scattering.
 class MediumPoint {
 public:
     void clear();
@@ -34,8 +34,8 @@ public:
 
     /// Per steradian and channel; `before` and `after` are directions of travel.
     [[nodiscard]] dvec3 phase(const dvec3& before, const dvec3& after) const;
-    /// One of the media there, drawn by how much it scatters of the hero; `share` becomes, by channel, its part of the scattering over the chance
-    /// that it was drawn with. CHECKs that something scatters.
+    /// One of the media there, drawn in proportion to its scattering of the hero; `share` becomes, by channel, its part of the scattering over the
+    /// probability of that choice. CHECKs that something scatters.
     [[nodiscard]] const MediumSource& pick(int hero, double u, dvec3& share) const;
 
     /// A direction of travel drawn from the hero's mixture.
@@ -50,13 +50,13 @@ private:
     std::vector<Part> parts_;
 };
 
-/// How light through a grid is estimated.
+/// How transmittance through a grid is estimated.
 enum class TransmittanceMode {
     Exact = 0, // cell by cell, no noise
     Ratio = 1, // residual ratio tracking against each brick's mean: unbiased
 };
 
-/// A part of a segment in which the media's densities have one bound each.
+/// A part of a segment in which each medium's density has one bound.
 struct SegmentPiece {
     double begin = 0, end = 0;
     dvec3 majorant{0}; // extinction bound, emission's share included, per metre
@@ -66,7 +66,7 @@ struct SegmentPiece {
     uint32_t firstPart = 0, partCount = 0;
 };
 
-/// Glow met on the way, as carried.
+/// Emission collected on the way, with the path's weights.
 struct EmittedLight {
     dvec3 position{0};
     dvec3 light{0};
@@ -83,24 +83,24 @@ public:
         bool collided = false;
         double distance = 0;
     };
-    /// Flies until the first real collision or the end, null collisions included. `emitted` becomes what glows on the way.
+    /// Flies until the first real collision or the end, with null collisions. `emitted` becomes the emission on the way.
     /// At a collision `point` holds the media there, and the weights include their scattering.
     Flight fly(Sampler& sampler, PathWeights& weights, MediumPoint& point,
                std::vector<EmittedLight>& emitted);
 
-    /// Draws a distance where free flight would often collide, given that it does, up to a depth of kDeepest.
+    /// Draws a distance in about the distribution of free flight's collisions, up to an optical depth of kDeepest.
     struct Draw {
         double distance = 0;
-        double density = 0; // per metre; 0: there is no medium on the way
+        double density = 0; // per metre; 0: there is no medium on the segment
     };
     [[nodiscard]] Draw drawCollision(double u);
     /// Of drawCollision choosing `t`.
     [[nodiscard]] double collisionDensity(double t);
-    /// An estimate of the density with which fly() collides at `t`: the same whenever asked, close to the truth on average.
+    /// An estimate of the density with which fly() collides at `t`: deterministic, and close to that density on average.
     [[nodiscard]] double flightDensity(double t);
     /// Where drawCollision draws.
     [[nodiscard]] Interval reach();
-    /// The chance of a collision within reach(), estimated.
+    /// The estimated probability of a collision within reach().
     [[nodiscard]] double collisionChance();
 
     static constexpr double kDeepest = 7;
@@ -126,7 +126,7 @@ private:
     std::vector<Part> parts_; // of all pieces
 };
 
-/// The part of light, per channel, that gets through all media along [0,length] of the ray.
+/// Transmittance, per channel, of all media along [0,length] of the ray.
 [[nodiscard]] dvec3 transmittance(const MediaField& media, const Ray& ray, double length,
                                   TransmittanceMode mode, Sampler& sampler);
 

@@ -1,5 +1,5 @@
 #pragma once
-// What went on in the paths that somebody traced.
+// Statistics of traced paths.
 
 #include <cmath>
 #include <cstdint>
@@ -13,7 +13,7 @@ struct PathCounts {
     uint64_t cutOff = 0;    // paths ended by a limit on their length
     uint64_t nonFinite = 0; // contributions that were not finite, left out
     uint64_t negative = 0;  // contributions below 0
-    /// Counts what is wrong with a contribution; false where it is no number, and is to be left out.
+    /// Counts what is wrong with a contribution; false if it is not finite and must be left out.
     [[nodiscard]] bool takes(const dvec3& light) {
         for (int c = 0; c < 3; ++c) {
             if (!std::isfinite(light[c])) {

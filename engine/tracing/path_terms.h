@@ -1,5 +1,5 @@
 #pragma once
-// Which term of light transport a path belongs to, from its scatterings as the path tracer meets them: eye first.
+// The term of light transport of a path, from its scatterings in the order of the path tracer: eye first.
 
 #include "transport/terms.h"
 

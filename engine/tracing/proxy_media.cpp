@@ -12,10 +12,10 @@ namespace {
 
 constexpr double kOctave = 8; // steps of coefficients
 constexpr double kLarger =
-    1.125; // boxes and balls: a place is off by less than half of √3 times its step
+    1.125; // boxes and balls: rounding moves a place by less than half of √3 times its step
 constexpr double kPlaceSteps = 8;      // of half the smallest extent
 constexpr int kCells = 8;              // of a grid, along its longest edge
-constexpr int kLooks = 4;              // at a grid, along each axis of a cell's surroundings
+constexpr int kLooks = 4;              // samples of a grid, along each axis of a cell's surroundings
 constexpr double kThinnest = 1.0 / 32; // of the densest cell: nothing is empty
 
 double rounded(double value, double steps) {
@@ -100,7 +100,7 @@ uint64_t hashOf(const Medium& medium, const dmat4& rayFromNode, uint64_t hash) {
     hash = mix(hash, std::bit_cast<uint32_t>(medium.anisotropy));
     hash = mix(hash, uint64_t(medium.kind) * 16 + uint64_t(medium.phase));
     if (glows(medium)) {
-        // As it is; and large, perhaps.
+        // The medium itself, which may be large.
         hash = mix(hash, medium.version);
         return mix(hash, std::bit_cast<uintptr_t>(medium.density.get()));
     }
@@ -130,7 +130,7 @@ void reweigh(const EmittedRay& start, std::vector<WalkVertex>& walk, const Media
     const auto ratio = [&](const Ray& ray, double length) {
         const dvec3 now = through(to, ray, length), proxy = through(from, ray, length);
         dvec3 result;
-        // So little got through the proxy that no walk did.
+        // The proxy's transmittance is so low that no walk passed it.
         for (int c = 0; c < 3; ++c) result[c] = proxy[c] > 0 ? now[c] / proxy[c] : 0;
         return result;
     };

@@ -1,5 +1,5 @@
 #pragma once
-// A ray of the reference path tracer. Its space is the world moved so that the camera is at the origin: coordinates stay
+// A ray. Its space is the world moved so that the camera is at the origin: coordinates stay
 // small where pictures are sharp, however far from the world's origin a scene lies.
 
 #include "core/math.h"
@@ -16,7 +16,7 @@ struct Ray {
 
 inline double maximumOf(const dvec3& v) { return glm::max(v.x, glm::max(v.y, v.z)); }
 inline double meanOf(const dvec3& v) { return (v.x + v.y + v.z) / 3; }
-/// Rec. 709 weights: what sampling decisions about colours go by.
+/// Rec. 709 weights, for sampling decisions about colours.
 inline double luminanceOf(const dvec3& v) { return 0.2126 * v.x + 0.7152 * v.y + 0.0722 * v.z; }
 
 /// An orthonormal right-handed frame with z along `normal` (Duff et al. 2017).

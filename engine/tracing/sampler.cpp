@@ -5,8 +5,8 @@
 namespace tyndall::tracing {
 namespace {
 
-/// Pairs of dimensions taken from sequences: a camera ray and some five vertices. What lies behind depends
-/// on so many numbers that evenness in any two of them no longer shows.
+/// Pairs of dimensions taken from sequences: a camera ray and some five vertices. Later vertices depend
+/// on so many numbers that evenness in any two of them does not help.
 constexpr uint32_t kSequencePairs = 24;
 
 } // namespace

@@ -10,7 +10,7 @@
 namespace tyndall::tracing {
 
 /// The samples of a pixel belong in turn to this many streams, each scrambled apart from the others: the spread of
-/// the streams' means measures the error of their mean, low-discrepancy points or not.
+/// the streams' means measures the error of their mean, also for low-discrepancy points.
 inline constexpr int kStreams = 8;
 
 class Sampler {
@@ -22,7 +22,7 @@ public:
     dvec2 next2();
     /// The next dimension, in [0,1). Two calls use one pair.
     double next1();
-    /// An independent number in [0,1): for what a path may need any number of.
+    /// An independent number in [0,1), for uses without a fixed number of dimensions.
     double random();
     /// An independent 64-bit number.
     uint64_t bits();

@@ -21,7 +21,7 @@ struct Context {
     uint64_t chance;
 };
 
-/// Embree asks at every surface that may have holes whether the ray meets it.
+/// Embree calls this at every surface that may have holes: does the ray hit it?
 void filterCoverage(const RTCFilterFunctionNArguments* arguments) {
     const Context& context = *reinterpret_cast<const Context*>(arguments->context);
     for (unsigned i = 0; i < arguments->N; ++i) {
@@ -31,7 +31,7 @@ void filterCoverage(const RTCFilterFunctionNArguments* arguments) {
         const double coverage = context.scene->coverageAt(
             instance, triangle, double(RTCHitN_u(arguments->hit, arguments->N, i)),
             double(RTCHitN_v(arguments->hit, arguments->N, i)));
-        // The same answer however often the tree offers the same triangle to the same ray.
+        // The same answer each time that the tree offers the same triangle to the same ray.
         const uint64_t bits =
             mixBits(context.chance ^ mixBits((uint64_t(instance) << 32) | triangle));
         if (!(double(bits >> 11) * 0x1p-53 < coverage)) arguments->valid[i] = 0;
@@ -71,7 +71,7 @@ dvec3 unitOr(const dvec3& v, const dvec3& otherwise) {
     return squared > 0 && std::isfinite(squared) ? v / std::sqrt(squared) : otherwise;
 }
 
-/// Calls `use(mesh, rayFromMesh)` for everything that is shown and has triangles; returns how many meshes have no area.
+/// Calls `use(mesh, rayFromMesh)` for every visible mesh with triangles; returns how many meshes have no area.
 template <typename Use> size_t forEachMesh(const Scene& scene, const dvec3& origin, Use&& use) {
     const std::vector<dmat4> world = scene.worldTransforms();
     const std::vector<bool> visible = scene.worldVisibility();
@@ -171,7 +171,7 @@ bool SurfaceScene::move(const Scene& scene, const dvec3& origin, std::vector<uin
         moved.push_back(i);
     }
     if (moved.empty()) return true;
-    if (!moves_) { // once; walks through such a tree take somewhat longer
+    if (!moves_) { // once; rays through such a tree take somewhat longer
         rtcSetSceneFlags(tree_, RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_DYNAMIC);
         rtcSetSceneBuildQuality(tree_, RTC_BUILD_QUALITY_MEDIUM);
         moves_ = true;

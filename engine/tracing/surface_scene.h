@@ -1,8 +1,8 @@
 #pragma once
-// The surfaces of a scene for rays: triangles in Embree, and what is at the point where one is hit.
+// The surfaces of a scene for rays: triangles in Embree, and the material at a hit point.
 //
-// Surfaces with holes (MASK) or of partial coverage (BLEND) let a ray pass by chance, decided by the ray's own random
-// number. One-sided surfaces seen from behind are passed by camera rays alone. Lines and points have no area: no ray meets them.
+// Surfaces with holes (MASK) or of partial coverage (BLEND) let a ray pass at random, decided by the ray's own random
+// number. Only camera rays pass one-sided surfaces from behind. Lines and points have no area: no ray hits them.
 
 #include <array>
 #include <memory>
@@ -40,14 +40,14 @@ struct RayHit {
     [[nodiscard]] bool found() const { return distance < kInfinity; }
 };
 
-/// A point of a surface, as the path that met it sees it.
+/// A point of a surface, for the path that hit it.
 struct SurfacePoint {
     dvec3 position{0};
     Surface surface;
     dvec3 emission{0}; // nits towards where the path came from
     bool unlit = false;
     uint32_t emitter = MeshInstance::kNoEmitter; // its triangle's number among those that emit
-    double margin = 0; // metres by which rays from here must start off the surface
+    double margin = 0; // metres by which rays from here start off the surface
 };
 
 /// A triangle's pieces: each of its edges in eight parts. Piece (i, j, upper) has barycentric u in [i, i+1]/8, v in [j, j+1]/8, and is the upper half of that.
@@ -58,7 +58,7 @@ inline constexpr int kPiecesAlongEdge = 8;
 
 struct SceneTriangle {
     std::array<dvec3, 3> corners{}; // ray space
-    uint64_t covers = ~0ull;        // a bit for each of its pieces: rays that meet the others pass
+    uint64_t covers = ~0ull;        // a bit for each of its pieces: rays pass the others
     [[nodiscard]] bool opaque() const { return covers == ~0ull; }
 };
 
@@ -71,8 +71,8 @@ public:
     static Result<std::unique_ptr<SurfaceScene>> build(const Scene& scene, const dvec3& origin,
                                                        int threads);
     ~SurfaceScene();
-    /// Moves meshes to where their nodes are now: trees are refitted in place of building them anew. `moved`: numbers of the instances that were.
-    /// False, and nothing is changed, where the scene shows other meshes than it did, or one is or was flat.
+    /// Moves meshes to where their nodes are now: trees are refitted, not built again. `moved`: numbers of the instances that were.
+    /// False, and nothing is changed, if the visible meshes are other ones than before, or one is or was flat.
     bool move(const Scene& scene, const dvec3& origin, std::vector<uint32_t>& moved);
     SurfaceScene(const SurfaceScene&) = delete;
     SurfaceScene& operator=(const SurfaceScene&) = delete;
@@ -88,14 +88,14 @@ public:
     [[nodiscard]] std::vector<MeshInstance>& mutableInstances() { return instances_; }
     [[nodiscard]] const MaterialReader& materials() const { return materials_; }
     [[nodiscard]] size_t triangleCount() const { return triangleCount_; }
-    /// All of them, instance by instance. Of a piece of partial coverage chance decides, the same each time, so that coverage is right on average.
+    /// All of them, instance by instance. A random decision, the same each time, fills pieces of partial coverage, so that coverage is right on average.
     [[nodiscard]] std::vector<SceneTriangle> triangles() const;
     [[nodiscard]] std::array<dvec3, 3> corners(uint32_t instance, uint32_t triangle) const;
-    /// That a triangle belongs to; `triangle`: its number among all.
+    /// The instance that a triangle belongs to; `triangle`: its number among all.
     [[nodiscard]] uint32_t instanceOf(uint32_t triangle) const;
     /// Of all triangles, in ray space; empty without any.
     [[nodiscard]] const Bounds& bounds() const { return bounds_; }
-    /// Sentences on what is left out.
+    /// Messages about what is left out.
     [[nodiscard]] const std::vector<std::string>& notes() const { return notes_; }
     /// Coverage at a point of a triangle: for Embree's filter.
     [[nodiscard]] double coverageAt(uint32_t instance, uint32_t triangle, double u, double v) const;
@@ -118,7 +118,7 @@ private:
     std::vector<std::string> notes_;
 };
 
-/// Where a path goes on from a surface, in this direction: off the surface by its margin.
+/// Start of a ray that leaves a surface in this direction: off the surface by its margin.
 inline Ray rayFrom(const SurfacePoint& point, const dvec3& direction) {
     const dvec3& n = point.surface.geometricNormal;
     const double side = glm::dot(n, direction) >= 0 ? point.margin : -point.margin;

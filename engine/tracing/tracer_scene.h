@@ -1,5 +1,5 @@
 #pragma once
-// A scene made ready for tracing paths, and what a path gives.
+// A scene prepared for tracing paths, and the light of a path.
 
 #include <array>
 #include <memory>

@@ -1,5 +1,5 @@
 #pragma once
-// A tree of boxes over a scene's triangles that is walked without a stack, on processors that have none to spare.
+// A tree of boxes over a scene's triangles that shaders walk without a stack.
 
 #include <cstdint>
 #include <span>
@@ -10,7 +10,7 @@
 
 namespace tyndall::tracing {
 
-/// Nodes stand in the order in which they are visited: a node's first child follows it, and `next` is where to go on when nothing in it is met.
+/// Nodes stand in the order in which they are visited: a node's first child follows it, and `next` is where to continue if its box is not hit.
 struct TreeNode {
     static constexpr uint32_t kInner = 0xffffffffu;
     vec3 minimum{0}; // of the box, ray space
@@ -19,7 +19,7 @@ struct TreeNode {
     uint32_t triangle = kInner; // of a leaf: index into what the tree was built from
 };
 
-/// Triangles that all rays pass, and such without area, are left out: nothing is hidden behind them. Empty where none is left.
+/// Triangles that all rays pass, and triangles without area, are left out: they block nothing. Empty if none is left.
 /// Errors: Embree gets no memory for it.
 Result<std::vector<TreeNode>> buildTriangleTree(std::span<const SceneTriangle> triangles);
 

@@ -6,9 +6,9 @@
 namespace tyndall::tracing {
 namespace {
 
-/// Compensation far from its beginning carries little: from the third vertex on it ends by chance.
+/// Later vertices of a path add little: Russian roulette from the third on.
 constexpr double kLeastSurvival = 0.1;
-/// Also between surfaces that absorb nothing, with a clamp distance so wide that it takes away all.
+/// Also between surfaces that absorb nothing, with a clamp distance so large that it removes all light.
 constexpr double kMostSurvival = 0.95;
 
 } // namespace

@@ -1,10 +1,10 @@
 #pragma once
-// The steps of a path from the eye whose vertices gather virtual point lights with a clamped geometry term. A path goes on to vertices
-// so near that clamping took light away, with the part that was taken away: bias compensation (Kollig and Keller 2004; Raab, Seibert
+// The steps of a path from the eye whose vertices gather virtual point lights with a clamped geometry term. A path continues to vertices
+// so near that clamping removed light, with the removed part: bias compensation (Kollig and Keller 2004; Raab, Seibert
 // and Keller 2006; Engelhardt, Novák and Dachsbacher 2010, section 4.3).
 //
 // Light between vertices x and y: G = D_x D_y / |x - y|², D the facet's cosine on a surface and 1 in a medium. The part min(1, b/G) of it comes
-// from virtual lights at y, the part max(0, 1 - b/G) from following the path to y.
+// from virtual lights at y, the part max(0, 1 - b/G) from continuing the path to y.
 
 #include <optional>
 
@@ -16,17 +16,17 @@ namespace tyndall::tracing {
 struct VirtualLightPathSettings {
     TermSet terms = kAllTerms;
     double clampDistance =
-        0.1; // metres: b = 1/clampDistance²; 0: not clamped; infinite: nothing is left to virtual lights
-    // Outside of a ball the distance grows in proportion to that from its middle.
+        0.1; // metres: b = 1/clampDistance²; 0: not clamped; infinite: virtual lights give nothing
+    // Outside of a ball it grows in proportion to the distance from its centre.
     dvec3 middle{0};
     double radius = kInfinity; // metres
-    double leastRoughness = 0; // smoother surfaces are taken for as rough as that
+    double leastRoughness = 0; // smoother surfaces count as this rough
 };
 
 /// One for each thread: it keeps its scratch memory from path to path. `scene` and `emission` must outlive it.
 class VirtualLightPath {
 public:
-    /// Where a path is scattered.
+    /// A vertex of a path.
     struct Vertex {
         dvec3 position{0};
         dvec3 before{0};          // direction in which the path came
@@ -53,22 +53,22 @@ public:
     void chooseHero();
     /// The vertex where a ray meets a surface. Does not count it among the path's scatterings.
     void enterSurface(const Ray& ray, const RayHit& hit, Vertex& vertex) const;
-    /// A scattering at the vertex: which term the light belongs to follows from it.
+    /// Counts a scattering at the vertex; the term of the light depends on it.
     void addScattering(Scattering kind) { history_.add(kind); }
     /// Follows the ray to where it is scattered. False where it leaves the scene.
     bool nextVertex(Ray& ray, double nearest, RayKind kind, Vertex& vertex);
     /// Flies from a ray's start to at most `distance` metres. True where a medium scatters it: `vertex` is there.
     bool nextVertexInMedia(const Ray& ray, double distance, Vertex& vertex);
-    /// On to where light comes from that clamping took away, with that part of it. False where there is none.
+    /// Continues to where clamped light comes from, with the clamped part. False if there is none.
     bool nearVertex(Vertex& vertex, const ClampDistances& clamped);
-    /// From the third vertex on paths end by chance.
+    /// Russian roulette, from the third vertex on.
     bool survives();
     /// Adds light of all vertices of the walk, with the geometry term clamped.
     void gatherWalk(const Vertex& vertex);
-    /// Adds light that comes straight from a light: no vertex of a walk stands for it.
+    /// Adds direct light: no vertex of a walk represents it.
     void gatherLights(const Vertex& vertex);
 
-    /// By which the clamp distance is larger here.
+    /// Factor of the clamp distance here.
     [[nodiscard]] double scaleAt(const dvec3& position) const;
     [[nodiscard]] ClampDistances clampedAt(const dvec3& position) const;
     /// Of the last vertex in a medium.

@@ -1,5 +1,5 @@
 #pragma once
-// Kinds of media, as far as techniques tell them apart: a technique may compute a term inside some kinds alone.
+// Kinds of media: a technique may compute a term in some kinds alone.
 
 #include <cstdint>
 #include <string>

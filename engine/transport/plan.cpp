@@ -10,7 +10,7 @@ namespace {
 constexpr std::string_view kDirectName = "direct";
 constexpr TermSet kTermsInMedia = kIndirectInMedia | bit(Term::LVE);
 
-/// kDirectPasses, an index, or kNobody when there is none of this name.
+/// kDirectPasses, an index, or kNobody if there is none of this name.
 int findTechnique(std::string_view name, std::span<const Technique> techniques) {
     if (name == kDirectName) return kDirectPasses;
     for (size_t i = 0; i < techniques.size(); ++i)
@@ -92,7 +92,7 @@ Result<Assignment> parseAssignment(std::string_view item, std::span<const Techni
 
 /// Gives the terms of one item to its technique, in the kinds of media that no other has.
 Result<void> take(FramePlan& plan, const Assignment& item, std::span<const Technique> techniques) {
-    if (item.owner == kDirectPasses) return {}; // they have them unless somebody takes them
+    if (item.owner == kDirectPasses) return {}; // they own them unless a technique takes them
     const Technique& technique = techniques[size_t(item.owner)];
     for (uint32_t i = 0; i < kTermCount; ++i) {
         const Term term = Term(i);
@@ -122,7 +122,7 @@ Result<void> assign(FramePlan& plan, std::string_view list, std::span<const Tech
         items.push_back(*item);
         list.remove_prefix(std::min(comma + 1, list.size()));
     }
-    // One that computes a term in few kinds of media comes before one that takes the rest.
+    // An item for few kinds of media comes before one that takes the rest.
     const auto kinds = [&](const Assignment& item) {
         if (item.owner < 0) return 0;
         return __builtin_popcount(item.media & techniques[size_t(item.owner)].media);
@@ -142,7 +142,7 @@ TermSet smallestWith(const Technique& technique, TermSet terms) {
     return best;
 }
 
-/// A technique that mixes terms must not be given a part of the mixture: it would be counted as what it is not.
+/// A technique that mixes terms must get one of its sets: light of other terms would be counted wrongly.
 Result<void> checkSets(const FramePlan& plan, std::span<const Technique> techniques) {
     for (size_t i = 0; i < techniques.size(); ++i) {
         const TermSet given = plan.termsOf(int(i)) & plan.possible;
@@ -154,7 +154,7 @@ Result<void> checkSets(const FramePlan& plan, std::span<const Technique> techniq
     return {};
 }
 
-/// A technique is told one set of kinds of media for all its terms in media.
+/// A technique has one set of kinds of media for all its terms in media.
 Result<void> checkKinds(const FramePlan& plan, std::span<const Technique> techniques) {
     for (size_t i = 0; i < techniques.size(); ++i) {
         const MediaSet all = plan.mediaOf(int(i));

@@ -1,5 +1,5 @@
 #pragma once
-// Who computes which term of light transport in this frame, once only, and why.
+// The plan of a frame: which technique computes each term of light transport, once only, and why.
 
 #include <array>
 #include <span>
@@ -16,10 +16,10 @@ namespace tyndall {
 struct Technique {
     std::string name; // "octaves"
     std::string title, help;
-    std::string plugin; // who brings it
+    std::string plugin; // the plugin that registered it
     TermSet claims = 0;
-    bool automatic = true; // `auto` may choose it; else it is there for who asks for it
-    /// The sets of terms that it can be given: one that mixes the light of several terms computes them together or not at all.
+    bool automatic = true; // `auto` may choose it; else only on request
+    /// The sets of terms that it takes: a technique that mixes several terms computes them together or not at all.
     /// Empty: any part of its claims.
     std::vector<TermSet> sets;
     MediaSet media = kAllMedia; // kinds of media in which it computes its terms in media

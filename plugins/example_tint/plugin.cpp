@@ -15,11 +15,13 @@ struct Settings {
 
 const SettingDesc kSettings[] = {
     TYNDALL_BOOL(Settings, enabled, "tint.enabled", "Tint", false,
-                 "Multiply the picture by a colour."),
-    TYNDALL_FLOAT(Settings, red, "tint.red", "Red", "", 0, 4, 1, "Factor of the red channel."),
+                 "Multiplies the picture by a colour."),
+    TYNDALL_FLOAT(Settings, red, "tint.red", "Red", "", 0, 4, 1,
+                  "Factor of the red channel. Above 1 brightens it."),
     TYNDALL_FLOAT(Settings, green, "tint.green", "Green", "", 0, 4, 1,
-                  "Factor of the green channel."),
-    TYNDALL_FLOAT(Settings, blue, "tint.blue", "Blue", "", 0, 4, 1, "Factor of the blue channel."),
+                  "Factor of the green channel. Above 1 brightens it."),
+    TYNDALL_FLOAT(Settings, blue, "tint.blue", "Blue", "", 0, 4, 1,
+                  "Factor of the blue channel. Above 1 brightens it."),
 };
 
 constexpr const char* kShader = R"(
@@ -37,8 +39,8 @@ void main() {
 class Tint final : public plugin::Plugin {
 public:
     const plugin::PluginInfo& info() const override {
-        static constexpr plugin::PluginInfo kInfo{
-            "example_tint", "0.1.0", "Multiplies the picture by a colour."};
+        static constexpr plugin::PluginInfo kInfo{"example_tint", "0.1.0",
+                                                  "Multiplies the picture by a colour."};
         return kInfo;
     }
     plugin::SettingsTable settings() override {

@@ -23,8 +23,9 @@ constexpr Make kTechniques[] = {TYNDALL_TECHNIQUES(TYNDALL_MAKE)};
 
 constexpr const char* kModeNames[] = {"corrected", "paper"};
 const SettingDesc kSettings[] = {
-    TYNDALL_ENUM(SharedParts, mode, "gi.mode", "Equations", kModeNames, 0,
-                 "corrected, or as the techniques' papers print them, as far as that can work."),
+    TYNDALL_ENUM(
+        SharedParts, mode, "gi.mode", "Equations", kModeNames, 0,
+        "Equations of the techniques: corrected, or paper, as their papers print them as far as that works."),
 };
 
 constexpr plugin::PluginInfo kInfo{"volumetric_gi", "0.1.0",

@@ -1,4 +1,4 @@
-// The light propagation lattice as shaders see it. Cells go along x fastest, then y, then z. An array holds one value of all cells,
+// The light propagation lattice for shaders. Cells go along x fastest, then y, then z. An array holds one value of all cells,
 // then the next value of all cells: plane after plane, `array[plane * cellCount + cell]`.
 #ifndef TYNDALL_SHARED_LPV_H
 #define TYNDALL_SHARED_LPV_H
@@ -8,8 +8,8 @@ TYNDALL_SHARED_BEGIN
 TYNDALL_CONST uint kLpvDirections = 26u; // x fastest, from -1 to 1
 TYNDALL_CONST uint kLpvClasses = 3u;     // of directions: across a face, an edge, a corner
 
-// Of the light that comes to a cell from its neighbours this part joins the lobe of two bands that the cell sends on; the rest goes straight
-// on. 1 would forget at each cell from how many sides light came; 0 would keep it to 26 rays (docs/techniques/lpv.md).
+// The part of the light from its neighbours that joins a cell's lobe of two bands; the rest goes straight
+// on. With 1 a cell forgets from how many sides light came; with 0 light stays on 26 rays (docs/measured/lpv-laws.md).
 TYNDALL_CONST float kLpvMixed = 0.65;
 
 // LpvFlux, floats: power that a cell sends in direction j in a step, of channel c: plane 3 j + c.
@@ -37,15 +37,15 @@ TYNDALL_CONST uint kLpvSourceVectors = 4u;
 TYNDALL_CONST uint kLpvDepositPlanes = 15u;
 
 // LpvLinks
-TYNDALL_CONST uint kLpvBlocked = 0u;     // bit j: a surface stands in the way to the neighbour in direction j
+TYNDALL_CONST uint kLpvBlocked = 0u;     // bit j: a surface blocks the link to the neighbour in direction j
 TYNDALL_CONST uint kLpvNearest = 1u;     // 6, of the first surface towards +x -x +y -y +z -z before the next cell: 4096 less its distance in
                                          // 4095ths of a cell << 20, and its normal, octahedral, 10 bits each; 0: none
-TYNDALL_CONST uint kLpvSidePlanes = 7u;  // those before: what tells on which side a point lies
-TYNDALL_CONST uint kLpvSurface = 7u;     // 26, of the first surface on the way in each direction: reflectance, 8 bits a channel, red the lowest, and above
-                                         // them 255 less its distance in 255ths of the way, at least 1; 0: none
+TYNDALL_CONST uint kLpvSidePlanes = 7u;  // those before: they decide on which side a point lies
+TYNDALL_CONST uint kLpvSurface = 7u;     // 26, of the first surface on the link in each direction: reflectance, 8 bits a channel, red the lowest, and above
+                                         // them 255 less its distance in 255ths of the link, at least 1; 0: none
 TYNDALL_CONST uint kLpvLinkPlanes = 33u;
 
-// LpvSides, what look-ups need of LpvLinks and LpvMedium: the links' first planes, and
+// LpvSides, the parts of LpvLinks and LpvMedium that look-ups need: the links' first planes, and
 TYNDALL_CONST uint kLpvCellMedium = 7u; // transport extinction times the cell's edge and albedo, means of the channels, as two halves
 TYNDALL_CONST uint kLpvLookupPlanes = 8u;
 
@@ -56,13 +56,13 @@ struct LpvDirection {
 
 /// One lattice.
 struct LpvGrid {
-    ivec4 size;  // cells along each axis; w: bit a: what leaves along axis a comes in again on the other side
+    ivec4 size;  // cells along each axis; w: bit a: light that leaves along axis a enters again on the other side
     vec4 lowest; // corner of the lattice, render space; w: edge of a cell, metres
     ivec4 place; // among several: x: first layer of the light's textures, y: first element of the links, z: bit a: along axis a the next coarser
                  // lattice goes on, w: 1: a step takes all cells, dark or not
 };
 
-/// The lattices that light is looked up in, the finest first.
+/// The lattices of look-ups, the finest first.
 TYNDALL_CONST uint kLpvMostLevels = 4u;
 struct LpvLevels {
     LpvGrid grids[4];
@@ -72,23 +72,23 @@ struct LpvLevels {
 struct LpvParams {
     LpvGrid grid;
     vec4 classWeights; // of all directions of a class together
-    float onward; // 1; 0: light ends at the first medium or surface that it meets
+    float onward; // 1; 0: light ends at the first medium or surface
     float padding0;
     float padding1;
     float padding2;
     LpvDirection directions[26];
 };
 
-/// How far a lattice's light has come, and where its power goes: LpvControl holds one of each lattice. Powers are watts a step, of the three channels
+/// Progress and energy balance of a lattice: LpvControl has one for each lattice. Powers are watts a step, of the three channels
 /// together.
 struct LpvControl {
     uint groups[3]; // of the next step; none where the light is settled
     float steps;    // since it began
     float residual; // of the last step: change of all powers over all powers
-    float error;    // estimate of what is left to come, over all powers; -1: not known
-    float stored;   // power on its way
+    float error;    // estimate of the remaining power, over all powers; -1: unknown
+    float stored;   // power being propagated
     uint settled;
-    // The last step's ledger: what was stored before and injected is absorbed, escapes, is blocked, or is stored after.
+    // The last step's energy balance: power stored before and injected is absorbed, escapes, is blocked, or is stored after.
     float injected;
     float absorbed;  // by media
     float escaped;   // out of the lattice
@@ -113,7 +113,7 @@ TYNDALL_CONST float kLpvOne = 3.5449077f; // <L|1> over the coefficient of the f
 struct LpvTransfer {
     vec4 harmonics[26]; // Γ_j in 1, y, z, x
     vec4 share[7];      // γ_j, four to a vector
-    float meanLength;   // of the ways to the neighbours, in cells
+    float meanLength;   // of the links to the neighbours, in cells
     float padding0;
     float padding1;
     float padding2;
@@ -146,7 +146,7 @@ struct LpvTriangles {
 struct LpvInjectParams {
     vec4 scale;      // rgb: fixed-point units for a unit of power
     uint light;      // index into `Lights`
-    float share;     // of the light's power that this map's point of the light stands for
+    float share;     // part of the light's power that this map's point represents
     float texelArea; // m², parallel views; 0: a perspective view, whose texels have solid angles
     uint padding0;
 };

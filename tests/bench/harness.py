@@ -68,12 +68,12 @@ def scenes(content):
 
 
 def parser(description, name, spp, out="bench-lpv"):
-    """The options that all benchmarks have. Results are kept in out/OUT, the page is docs/benchmarks-NAME.md."""
+    """The options that all benchmarks have. Results are kept in out/OUT, the page is docs/measured/NAME.md."""
     made = argparse.ArgumentParser(description=description, formatter_class=argparse.RawDescriptionHelpFormatter)
     made.add_argument("--build", default=ROOT / "build/release", type=pathlib.Path)
     made.add_argument("--out", default=ROOT / "out" / out, type=pathlib.Path)
     made.add_argument("--spp", default=spp, type=int)
-    made.add_argument("--page", default=ROOT / f"docs/benchmarks-{name}.md", type=pathlib.Path)
+    made.add_argument("--page", default=ROOT / f"docs/measured/{name}.md", type=pathlib.Path)
     return made
 
 

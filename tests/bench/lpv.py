@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Measures the light propagation volumes against the reference and writes the tables of docs/benchmarks-lpv.md.
+"""Measures the light propagation volumes against the reference and writes the tables of docs/measured/lpv.md.
 
     tests/bench/lpv.py [--build build/release] [--out out/bench-lpv] [--scenes NAME,...] [--qualities low,medium,high,ultra] [--spp 1024]
 
@@ -29,7 +29,7 @@ def capture(bench, scene, label, *options):
 
 def errors_table(bench, content, wanted, qualities):
     head = ["scene", "technique", "surfaces: relmse, energy", "media: relmse, energy", "picture: relmse, energy", "lattices", "steps", "frame, ms",
-            "maps and injection, ms", "propagation, ms", "look-ups, ms"]
+            "maps and injection, ms", "propagation, ms", "surfaces and march, ms"]
     rows = []
     for name, scene, fewer in harness.chosen(scenes(content), wanted):
         path = bench.scene(name, scene)
@@ -75,7 +75,7 @@ def paper_table(bench, content):
         p = dict(PAPER[cells])
         rows.append([f"{cells}, the paper's", "", f"{p['reflected light in'] + p['scattered light in']:.2f}", f"{p['blockers'] + p['preparation']:.2f}",
                      f"{p['eight steps']:.2f}", f"{p['copies']:.2f}", "1.7", "14"])
-    return table(["cells along the hall", "maps", "injection", "blockers, media", "eight steps", "light of cells", "on surfaces", "march and upsampling"], rows)
+    return table(["cells along the hall", "maps", "injection", "blocked links, media", "eight steps", "fluence of cells", "on surfaces", "march and upsampling"], rows)
 
 
 def main():
@@ -93,18 +93,20 @@ def main():
     errors = errors_table(bench, content, arguments.scenes, arguments.qualities.split(","))
     arguments.page.write_text(f"""# Light propagation volumes: error and time
 
-Made by `tests/bench/lpv.py` from a release build of {commit_date()}, on {machine()} with llvmpipe: a GPU is another world.
-What the columns mean and why the numbers are what they are: [techniques/lpv.md](techniques/lpv.md).
+This page measures the error and the frame time of `--gi lpv` by scene and quality, on {machine()} with llvmpipe; `tests/bench/lpv.py` makes it again from a release build.
+
+Release build of {commit_date()}. A software driver rendered the frames: compare rows with each other, not with a GPU. The technique is explained in [lpv-explained.md](../techniques/lpv-explained.md); the
+laws that it obeys are measured in [lpv-laws.md](lpv-laws.md).
 
 ## Error and time by scene
-{SIZE} pixels, averages of {FRAMES} frames, against the reference ({arguments.spp} samples a pixel, half as many for the smoke, eight times as many for fog of τ 8, four times for Sponza). relmse and energy are those of [compare.md](compare.md):
-of the indirect terms on surfaces, of those in media, and of the whole picture. "none" has direct light alone, "octaves" is the baseline, "paper" the printed scheme with eight steps.
-Milliseconds are those of a frame in which all light is found anew (`gi.lpv.keep=false`), but not media and blockers, which are kept while nothing moves.
+Pictures are averages of {FRAMES} frames of {SIZE} pixels. The reference has {arguments.spp} samples a pixel, half as many for the smoke, eight times as many for fog of τ 8, four times as many for Sponza. relmse and energy
+([compare.md](../compare.md)) are given for the indirect terms on surfaces, for the indirect terms in media, and for the whole picture. "none" is direct light alone, "octaves" is the baseline, and "paper" is the printed
+scheme with eight steps. Milliseconds are those of one frame that propagates all light again (`gi.lpv.keep=false`). Media and blocked links are cached, as in any scene where nothing moves.
 
 {errors}
 ## The paper's configuration
-Sponza with fog at 1280x720, reflective shadow maps of 256², eight steps (Billeter, Sintorn and Assarsson 2012, Table 1, on a GeForce GTX 480). Milliseconds; blockers are kept while nothing
-moves, so that their column has what a still scene pays. Light in media is marched for squares of 2x2 pixels (`gi.lpv.march`).
+Milliseconds for Sponza with fog at 1280x720, with reflective shadow maps of 256² and eight steps, beside those of Billeter, Sintorn and Assarsson 2012 (Table 1, GeForce GTX 480). The engine
+caches blocked links while nothing moves, so their column has what a still scene pays. One ray is marched for 2x2 pixels (`gi.lpv.march`).
 
 {paper_table(bench, content)}""")
     print(f"wrote {arguments.page}")

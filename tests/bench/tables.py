@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Measures what docs/benchmarks.md shows, and writes it.
+"""Measures what docs/measured/frame-times.md shows, and writes it.
 
     tests/bench/tables.py [--build build/release] [--frames 4]
 
@@ -99,7 +99,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--build", default=ROOT / "build/release", type=pathlib.Path)
     parser.add_argument("--frames", default=4, type=int)
-    parser.add_argument("--output", default=ROOT / "docs/benchmarks.md", type=pathlib.Path)
+    parser.add_argument("--output", default=ROOT / "docs/measured/frame-times.md", type=pathlib.Path)
     arguments = parser.parse_args()
     program = arguments.build / "bin/tyndall"
     content = pathlib.Path(os.environ.get("TYNDALL_CONTENT", ROOT.parent / "shared/content"))
@@ -114,24 +114,25 @@ def main():
                 results[scene, size] = measure(program, path, size, arguments.frames, folder)
         ratio, noise = cost_of_no_media(program, without_media, arguments.frames, folder)
     any_report = next(iter(results.values()))
-    text = f"""# Benchmarks
+    text = f"""# Frame times
 
-Made by `tests/bench/tables.py` from a release build of {commit_date()}, on {machine()}
-with {any_report["gl"]["renderer"]} ({any_report["gl"]["version"]}, {any_report["backend"]}): {arguments.frames} frames each, direct light and single scattering. Software rendering: the numbers compare passes and scenes with each other; a GPU is another world.
-Beside another path tracer: [peers.md](peers.md).
+This page measures milliseconds per pass, start-up time and memory with direct light and single scattering, on {machine()}
+with {any_report["gl"]["renderer"]} ({any_report["gl"]["version"]}, {any_report["backend"]}); `tests/bench/tables.py` makes it again from a release build.
+
+Release build of {commit_date()}, {arguments.frames} frames of each scene. A software driver rendered them: compare passes and scenes with each other, not with a GPU.
 
 ## Frames, start-up, memory
-The median and the 95th percentile leave out the first frame, in which shaders are compiled. "First picture after" counts from the
-start of the program: loading, compiling and that frame included.
+The median and the 95th percentile leave out the first frame, in which shaders are compiled. "First picture after" is the time from the
+start of the program to the first picture. It includes loading, compiling and the first frame.
 
 {summary(results)}
-## What media cost where there are none
-The last scene without media takes {ratio:.3f} times as long as the same with no term of media asked for (`--terms LE,LSE`); three runs of the
+## Cost of the media passes in a scene without media
+The last scene without media takes {ratio:.3f} times as long with all terms as with surface terms alone (`--terms LE,LSE`). Three runs of the
 latter differ by a factor of {noise:.3f}.
 
 """
     for size in SIZES:
-        text += f"## Milliseconds per pass at {size}\nA word in place of a number says why the pass did not run in the last frame.\n\n{passes(results, size)}\n"
+        text += f"## Milliseconds per pass at {size}\nA word in place of a number is the state of a pass that did not run in the last frame.\n\n{passes(results, size)}\n"
     arguments.output.write_text(text)
     print(f"wrote {arguments.output}")
 

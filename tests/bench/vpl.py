@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Measures virtual point lights against the reference and writes the tables of docs/benchmarks-vpl.md.
+"""Measures virtual point lights against the reference and writes the tables of docs/measured/vpl.md.
 
     tests/bench/vpl.py [--build build/release] [--out out/bench-lpv] [--scenes NAME,...] [--frames 32] [--spp 4096]
 
@@ -126,26 +126,30 @@ def main():
     costs, choice = costs_table(bench), choice_table(bench, content)
     arguments.page.write_text(f"""# Virtual point lights: error and time
 
-Made by `tests/bench/vpl.py` from a release build of {commit_date()}, on {machine()} with llvmpipe: a GPU is another world.
-What the columns mean and why the numbers are what they are: [techniques/vpl.md](techniques/vpl.md). The paper's figures are in [benchmarks-vpl-figures.md](benchmarks-vpl-figures.md).
+This page measures the error, the cost and the choice of lights of `--gi vpl`, on {machine()} with llvmpipe; `tests/bench/vpl.py` makes it again from a release build.
+
+Release build of {commit_date()}. A software driver rendered the frames: compare rows with each other, not with a GPU. The technique is explained in [vpl-explained.md](../techniques/vpl-explained.md); the paper's
+figures are in [vpl-figures.md](vpl-figures.md), the laws that it obeys in [vpl-laws.md](vpl-laws.md).
 
 ## Error
-Against the reference ({SIZE} pixels, {arguments.spp} samples for each, half as many for the smoke, eight times as many for fog of τ 8, four times for Sponza and the cloud): relmse and energy
-([compare.md](compare.md)) of the indirect terms on surfaces, of those in media, and of the picture with direct light and all. One frame is {FINE} pixels, of which averages of 8x8 are compared (`tyndall compare --reduce`): one sample a
-pixel has steps where the reference has smooth outlines, at {SIZE} 0.05 of squared error whatever the light. Ultra is an average of frames of {SIZE} with new walks in each. The reference's own
-noise is told from one of other random numbers: what is less cannot be told from nothing.
+relmse and energy ([compare.md](../compare.md)) of the indirect terms on surfaces, of the indirect terms in media, and of the whole picture. The reference has {SIZE} pixels and {arguments.spp} samples a pixel, half as many for the smoke,
+eight times as many for fog of τ 8, four times as many for Sponza and the cloud.
+
+- One frame is rendered at {FINE} pixels, and averages of 8x8 of them are compared (`tyndall compare --reduce`). A frame of {SIZE} has one sample a pixel: its aliased outlines alone are a squared error of 0.05.
+- Ultra is an average of frames of {SIZE} with new walks in each.
+- The reference's own noise is measured against a second reference with another seed. An error below it cannot be distinguished from 0.
 
 {errors}
 ## As printed and corrected
-Averages of 16 frames of {SIZE} at medium quality (`gi.mode`); relmse and energy as above.
+Averages of 16 frames of {SIZE} at medium quality with `gi.mode` `corrected` and `paper`; relmse and energy as above.
 
 {modes}
 ## Cost
-One frame of the box with fog, τ 2, at high quality, in which walks and maps are made anew; media with 8 points a ray, one walk in 8 at each, without compensation. Twice the lights are twice the milliseconds of each phase.
+One frame of the box with fog, τ 2, at high quality. Walks and maps are made again in this frame. Media are gathered at 8 points a ray, one walk in 8 at each, without compensation. Each phase takes time in proportion to the number of lights.
 
 {costs}
 ## Choice
-Averages of 8 frames at 256 walks a frame, chosen from so many times as many (`gi.vpl.candidates`); on the right all of these are gathered instead. Milliseconds are those of one frame.
+Averages of 8 frames with the lights of 256 walks, chosen from `gi.vpl.candidates` times as many walks. In the columns on the right all lights of the candidates are gathered instead. Milliseconds are those of one frame.
 
 {choice}""")
     print(f"wrote {arguments.page}")

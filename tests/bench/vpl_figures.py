@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Makes the figures of Engelhardt, Novák and Dachsbacher 2010 with virtual point lights: pictures in out/vpl-figures, tables in docs/benchmarks-vpl-figures.md.
+"""Makes the figures of Engelhardt, Novák and Dachsbacher 2010 with virtual point lights: pictures in out/vpl-figures, tables in docs/measured/vpl-figures.md.
 
     tests/bench/vpl_figures.py [--build build/release] [--out out/vpl-figures] [--seeds 2] [--spp 4096]
 
@@ -55,7 +55,7 @@ def bounds(figures, scene, reference):
     for clamp in (0.25, 0.5, 1, 2, 4):
         modes = [figures.errors(scene, reference, f"{mode}-{clamp}", {"compensation": mode, "clamp": clamp}, MEDIA)[0] for mode in ("clamped", "closed", "traced")]
         rows.append([f"{clamp}", *map(pair, modes)])
-    return table(["bound", "clamped", "closed", "traced"], rows)
+    return table(["clamp", "clamped", "closed", "traced"], rows)
 
 
 def strategies(figures, scene, reference):
@@ -68,7 +68,7 @@ def strategies(figures, scene, reference):
         found = figures.errors(scene, reference, label, {"samples": samples, "classes": classes, "walks": 256}, MEDIA)[0]
         same = [figures.compare(all_.with_name(all_.name.replace(".all.", f".{label}.")), all_, MEDIA)[0] for all_ in whole]
         rows.append([f"{samples}", f"1/{classes}", pair(found), f"{sum(same) / len(same):.4f}"])
-    return table(["points of a ray", "of the walks at each", "against the reference: relmse, energy", "against all of the same walks: relmse"], rows)
+    return table(["points on a ray", "part of the walks at each", "against the reference: relmse, energy", "against all of the same walks: relmse"], rows)
 
 
 def slope(errors):
@@ -129,26 +129,28 @@ def main():
     scenes = papers(figures, content)
     arguments.page.write_text(f"""# Virtual point lights: the paper's figures
 
-Made by `tests/bench/vpl_figures.py` from a release build of {commit_date()}, on {machine()} with llvmpipe: a GPU is another world. The pictures, and signed pictures of the error in media
-(blue: too dark, red: too bright), are in `out/vpl-figures`. What things are called: [techniques/vpl.md](techniques/vpl.md).
+This page measures the paper's figures (Engelhardt, Novák and Dachsbacher 2010) with `--gi vpl`, on {machine()} with llvmpipe; `tests/bench/vpl_figures.py` makes it again from a release build.
 
-{SIZE} pixels, one frame, every pixel and ray on its own, 256 walks where nothing else is said; means over {arguments.seeds} seeds of relmse and energy ([compare.md](compare.md)) against the reference
-({arguments.spp} samples a pixel, half as many for the smoke and a quarter for Sponza).
+Release build of {commit_date()}. The script also writes the pictures, and heat maps of the error in media (blue: too dark, red: too bright), into `out/vpl-figures`. The terms are explained in
+[vpl-explained.md](../techniques/vpl-explained.md).
 
-## What the bound takes away
-Light in media, by what makes up for it, and `gi.vpl.clamp` (figure 7 of the paper: error with compensation and without).
+Each row is one frame of {SIZE} pixels in which every pixel and ray gathers on its own, with 256 walks unless the table says otherwise. The tables give relmse and energy ([compare.md](../compare.md)), means over {arguments.seeds} seeds, against a
+reference of {arguments.spp} samples a pixel (half as many for the smoke, a quarter as many for Sponza).
+
+## Clamping and compensation
+Light in media, by compensation and `gi.vpl.clamp` (the clamping distance over the mean distance between lights): figure 7 of the paper, the error with compensation and without.
 
 {compensation}
-## Which lights at which points
-Light in media of fog in a box: {CONNECTIONS} connections of a ray to walks, as few points that gather all walks or as many that gather few of them (figure 4).
+## Points along a ray and interleaved subsets
+Light in media of fog in a box. A ray has {CONNECTIONS} connections to walks in every row: few points that gather all walks, or many points that each gather a subset (figure 4).
 
 {subsets}
 ## Walks and error
-Fog in a box. Noise alone has the slope -1; a bound that follows the number of lights costs less and less, and the noise of the points along a ray stays.
+Fog in a box. Noise of the walks alone would have the slope -1 in log error over log walks. The error of clamping shrinks as lights come closer together; the noise of the points along a ray stays.
 
 {counts}
 ## The paper's scenes
-Sponza with fog at as many lights as the paper has; smoke with 500 walks. Depth from a light to a point comes from maps of 64² directions by 16 steps, where the paper marches 64 steps.
+Sponza with fog has as many lights as in the paper; the smoke has 500 walks. Optical depth from a light to a point comes from maps of 64² directions by 16 distances, where the paper marches 64 steps.
 
 {scenes}""")
     print(f"wrote {arguments.page}")

@@ -1,6 +1,6 @@
 #pragma once
 // The slow, obvious version of the propagation in a lattice: one channel, double precision, every cell and every direction in a loop.
-// The oracle of shaders/gi/lpv; what it computes is derived in docs/techniques/lpv.md.
+// The oracle of shaders/gi/lpv; what it computes is explained in docs/techniques/lpv-explained.md.
 
 #include <array>
 #include <cstdint>

@@ -69,7 +69,7 @@ TEST(App, ARenderItsReportAndItsErrorAgainstTheReferenceComeFromCode) {
             compareImages(term.image, (*tracer)->film().term(which));
         ASSERT_TRUE(metrics.ok()) << metrics.message();
         // The direct passes promise an energy within 0.5 % and a relmse of 1e-3 beyond the reference's noise
-        // (docs/direct-light.md), which 512 samples leave below as much again.
+        // (docs/measured/direct-light.md), which 512 samples leave below as much again.
         EXPECT_NEAR(metrics->energy, 1, 0.005) << term.name;
         EXPECT_LT(metrics->relmse, 0.002) << term.name;
         ++compared;

@@ -1,5 +1,5 @@
 // Known results of radiative transfer: the rows that others have published, those that need no chance, and a spread of the rest.
-// `make validation` measures all of them and writes docs/validation.md.
+// `make validation` measures all of them and writes docs/measured/validation.md.
 
 #include <gtest/gtest.h>
 

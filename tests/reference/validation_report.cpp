@@ -1,4 +1,4 @@
-// Measures the whole table and writes docs/validation.md; see `make validation`.
+// Measures the whole table and writes docs/measured/validation.md; see `make validation`.
 
 #include <chrono>
 #include <cstdio>

@@ -173,8 +173,8 @@ TEST_P(MediaFunctions, TheBoundTakesAwayWhatFindingSevenSays) {
             inputs.emplace_back(float(r * r), 1.0f, float(x * x), float(x));
         }
         const auto outputs = runOnly(
-            {"gi/vpl/bound.glsl"},
-            "outputs[id] = vec4(heldInverseSquare(inputs[id].x, inputs[id].y, inputs[id].z),"
+            {"gi/vpl/clamping.glsl"},
+            "outputs[id] = vec4(clampedInverseSquare(inputs[id].x, inputs[id].y, inputs[id].z),"
             " clampLoss(vec3(inputs[id].w)).x, 0, 0);",
             inputs);
         double kept = 0;

@@ -7,8 +7,8 @@ namespace {
 
 constexpr int kClassSize[kLengthClasses] = {6, 12, 8};
 
-/// One weight a class: means of 1, of x⁴ and of x²y²z² over the sphere are 1, 1/5 and 1/105; odd powers vanish by symmetry, and what
-/// else there is up to degree 7 follows from these.
+/// One weight a class: means of 1, of x⁴ and of x²y²z² over the sphere are 1, 1/5 and 1/105; odd powers vanish by symmetry, and the
+/// other moments up to degree 7 follow from these.
 std::array<double, kLengthClasses> solveWeights() {
     // Rows: the three means; columns: classes. Directions of class c have c+1 components of size 1/sqrt(c+1), the others 0.
     dmat3 moments(0.0); // [column][row]

@@ -1,6 +1,6 @@
 #pragma once
-// The 26 ways from a cell of a cubic lattice to its neighbours, and what is derived from their geometry: quadrature weights for the
-// corrected scheme, transfer functions for the printed one.
+// The 26 directions from a cell of a cubic lattice to its neighbours, with the quadrature weights of the
+// corrected scheme and the transfer functions of the printed one.
 
 #include <array>
 
@@ -30,7 +30,7 @@ struct TransferFunction {
     std::array<double, 4>
         harmonics{}; // Γ_j = V_j / sqrt(Ω_j), V_j the projection of the solid angle: <Γ_j|1> = sqrt(Ω_j)
     double printedShare =
-        0; // γ_j = <Γ_j|1> / Σ <Γ_l|1>: Σ γ_j <Γ_j|1> is not 1, so light is lost (transport.md, finding 1)
+        0; // γ_j = <Γ_j|1> / Σ <Γ_l|1>: Σ γ_j <Γ_j|1> is not 1, so power is lost
 };
 [[nodiscard]] const std::array<TransferFunction, kLatticeDirections>& transferFunctions();
 

@@ -6,7 +6,7 @@
 
 namespace tyndall::volumetric_gi {
 
-/// `lowest`: corner in render space, `cell`: edge in metres; `repeats`: bit a where what leaves along axis a comes in again on the other side.
+/// `lowest`: corner in render space, `cell`: edge in metres; `repeats`: bit a where light that leaves along axis a enters again on the other side.
 [[nodiscard]] inline gpu::LpvParams latticeParams(const ivec3& size, int repeats,
                                                   const vec3& lowest = vec3(0), float cell = 1) {
     gpu::LpvParams params{};
@@ -22,7 +22,7 @@ namespace tyndall::volumetric_gi {
     return params;
 }
 
-/// Blocks of cells, the workgroups of shaders that take one thread a cell.
+/// Blocks of cells, the workgroups of shaders with one thread for each cell.
 [[nodiscard]] inline ivec3 blocksOf(const ivec3& size) {
     const ivec3 block(gpu::kLpvBlockX, gpu::kLpvBlockY, gpu::kLpvBlockZ);
     return (size + block - 1) / block;

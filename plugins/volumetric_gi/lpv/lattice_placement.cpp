@@ -10,9 +10,9 @@ namespace tyndall::volumetric_gi {
 namespace {
 
 constexpr int kMostRatio = 4;
-constexpr double kAhead = 0.3; // of its side that the middle of a lattice is before the eye
-/// In cells: where the scene begins a cell does, so that walls there stand between cells; but for a thousandth, lest what is a whole number
-/// of cells away lies on middles and edges.
+constexpr double kAhead = 0.3; // distance of a lattice's centre before the eye, over its side
+/// In cells: a cell begins where the scene begins, so that walls there lie between cells; but for a thousandth, so that surfaces a whole number
+/// of cells away do not lie on centres and edges of cells.
 const dvec3 kMargin(1.001, 1.0013, 1.0017);
 
 double longest(const Bounds& b) {
@@ -39,7 +39,7 @@ Span placeAlong(const PlacementRequest& request, int axis, double cell,
         centre = std::clamp(request.eye[axis] + kAhead * side * request.forward[axis], first + half,
                             last - half);
     centre = std::clamp(centre, least + half, least + length - half);
-    // In whole cells of the coarser lattice, which itself stands still or moves so.
+    // In whole cells of the coarser lattice, which itself is fixed or moves in whole cells.
     const double step = coarser ? double(coarser->params.grid.lowest.w) : cell;
     const double origin =
         coarser ? double(coarser->params.grid.lowest[axis]) : least - cell * kMargin[axis];

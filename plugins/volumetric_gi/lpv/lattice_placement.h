@@ -1,5 +1,5 @@
 #pragma once
-// Where the lattices lie: one around what is in the scene, coarser ones around it out to the landscape.
+// Where the lattices are: one around the objects of the scene, coarser ones around it out to the landscape.
 
 #include <cstdint>
 #include <vector>
@@ -14,13 +14,13 @@ struct LatticeLevel {
     uint64_t cells = 0;
     uint64_t key = 0; // of place and size
     bool covered =
-        false; // the next finer lattice lies wherever this one does: nobody looks light up here
+        false; // the next finer lattice covers all of this one: there are no look-ups here
     [[nodiscard]] Bounds box() const; // render space
 };
 
 struct PlacementRequest {
     Bounds bounds;  // of the scene, render space
-    Bounds content; // of what is in it, without the landscape that it stands in
+    Bounds content; // of its objects, without the landscape around them
     dvec3 eye{0}, forward{0, 0, -1};
     int resolution =
         32; // cells along the longest side of the finest lattice, with one more than its extent at each end
@@ -32,7 +32,7 @@ struct PlacementRequest {
 /// where the content is longer than it, in whole cells of the next coarser one, so that nothing swims. `bounds` is not empty.
 [[nodiscard]] std::vector<LatticeLevel> placeLattices(const PlacementRequest& request);
 
-/// Lays lattices that light is looked up in one behind the other in shared textures and links: sets their `place`, returns them as shaders
+/// Puts the lattices of look-ups one behind the other in shared textures and links: sets their `place`, returns them as shaders
 /// take them, the finest first. `layers`, `links`: texture layers and elements in all; `across`: cells of the largest along x and y.
 struct SharedPlaces {
     gpu::LpvLevels levels{};

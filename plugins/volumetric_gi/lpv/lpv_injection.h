@@ -1,5 +1,5 @@
 #pragma once
-// Light into the lattice: from the texels of reflective shadow maps into fixed-point deposits, and from these into the sources of a step.
+// Injection: the texels of reflective shadow maps add to fixed-point deposits, and deposits become the sources of a step.
 
 #include "plugin/plugin_api.h"
 #include "shared/lpv.h"
@@ -34,7 +34,7 @@ struct Rsm {
                                             const LpvSettings& settings, const Rsm& rsm,
                                             const Injection& injection);
 
-/// LpvSources of all deposits; medium and links are not needed.
+/// LpvSources of all deposits; does not need medium and links.
 [[nodiscard]] fg::BufferHandle addCollection(fg::FrameGraph& graph, const Injection& injection,
                                              uint64_t cells);
 

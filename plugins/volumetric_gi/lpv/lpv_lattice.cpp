@@ -136,7 +136,7 @@ fg::BufferHandle addInflow(fg::FrameGraph& graph, const Lattice& lattice, const 
 
 namespace {
 
-constexpr int kStepsBetweenLooks = 8; // at the residual; even: light ends in the first buffer
+constexpr int kStepsBetweenLooks = 8; // between looks at the residual; even: light ends in the first buffer
 
 struct StepsData {
     fg::BufferHandle medium, sources, links, flux[2], control, partials, lit;

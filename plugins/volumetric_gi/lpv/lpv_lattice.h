@@ -1,5 +1,5 @@
 #pragma once
-// One lattice: what it is made of, and the steps that light takes in it.
+// One lattice: its buffers and its propagation steps.
 
 #include "plugin/plugin_api.h"
 #include "volumetric_gi/lpv/lattice_placement.h"
@@ -11,17 +11,17 @@ struct Lattice {
     fg::BufferHandle medium, links, sources, flux, fluxBefore; // LpvMedium and so on, shared/lpv.h
 };
 
-/// What the media are in each cell. Kept while they and the lattice stay.
+/// The media of each cell. Cached while they and the lattice stay the same.
 [[nodiscard]] fg::BufferHandle addLatticeMedium(fg::FrameGraph& graph,
                                                 const plugin::FrameInputs& inputs,
                                                 const LatticeLevel& level);
 
-/// Which ways between cells surfaces cross. Kept while they and the lattice stay.
+/// The links between cells that surfaces block. Cached while they and the lattice stay the same.
 [[nodiscard]] fg::BufferHandle addLatticeLinks(fg::FrameGraph& graph,
                                                const plugin::FrameInputs& inputs,
                                                const LatticeLevel& level);
 
-/// Adds the light that comes in from the coarser lattice around it to the sources; returns their next version.
+/// Adds the light that enters from the coarser lattice around it to the sources; returns their next version.
 [[nodiscard]] fg::BufferHandle addInflow(fg::FrameGraph& graph, const Lattice& lattice,
                                          const Lattice& outer);
 
@@ -30,11 +30,11 @@ struct Flux {
 };
 struct StepsRequest {
     int lattice;     // number among the lattices, the coarsest is 0
-    int most;        // steps; fewer where light is settled before
-    float tolerance; // it is when what is left to come, over what there is, is estimated to be less
+    int most;        // maximum steps; fewer if light settles before
+    float tolerance; // light is settled when the estimated remaining light, over the light that is there, is less
     bool
-        goOn; // from where the last frame left the light; else from that of the coarser lattice around it, or from darkness
-    bool ledger; // fill in where the power goes
+        goOn; // continue the last frame's light; else begin with the light of the coarser lattice around it, or with none
+    bool ledger; // fill in the energy balance
 };
 /// Propagates light. `control`: LpvControl of each lattice, its next version on return.
 [[nodiscard]] Flux addSteps(fg::FrameGraph& graph, const Lattice& lattice, const Lattice* outer,

@@ -26,7 +26,7 @@ LatticeLight writeLight(fg::Builder& builder, const LatticeLight& light) {
 }
 
 constexpr LightMarchNames kMarchNames{"gi.lpv.march", "gi.lpv.upsample",
-                                      "", // which marches what no ray fits
+                                      "", // which marches pixels that no ray fits
                                       "gi.lpv.coarse.inScatter", "gi.lpv.inScatter"};
 
 /// Light that media scatter to the eye.

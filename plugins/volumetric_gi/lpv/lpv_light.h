@@ -1,5 +1,5 @@
 #pragma once
-// What the lattice's light does in the picture: light at points, on surfaces, and in media along eye rays.
+// Look-ups of the lattice's light: at points, on surfaces, and in media along eye rays.
 
 #include "plugin/plugin_api.h"
 #include "shared/lpv.h"
@@ -17,7 +17,7 @@ struct LatticeLight {
 /// For the pass that is the first to write light.
 [[nodiscard]] LatticeLight createLight(fg::Builder& builder, const SharedPlaces& places);
 
-/// Adds one lattice's light to that of others; null handles where it is the first.
+/// Adds one lattice's light to that of others; null handles if it is the first.
 [[nodiscard]] LatticeLight addLatticeLight(fg::FrameGraph& graph, const Lattice& lattice,
                                            const SharedPlaces& places, const LatticeLight& others);
 

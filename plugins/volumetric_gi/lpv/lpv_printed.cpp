@@ -25,7 +25,7 @@ Command& bindPrinted(Command& command, const PrintedData& data, fg::BufferHandle
         .bind("LpvRadiance", radiance);
 }
 
-/// Where the power of the last step went; its result is in radiance[steps % 2].
+/// Energy balance of the last step; its result is in radiance[steps % 2].
 void recordLedger(const PrintedData& data, fg::PassContext& context) {
     auto measure = context.compute("gi/lpv/printed_measure.comp");
     bindPrinted(measure, data, data.radiance[1 - data.steps % 2])
@@ -34,7 +34,7 @@ void recordLedger(const PrintedData& data, fg::PassContext& context) {
         .dispatch(uint32_t(data.groups.x), uint32_t(data.groups.y), uint32_t(data.groups.z));
     gpu::LpvControl control{};
     control.steps = float(data.steps);
-    control.error = -1; // it does not settle
+    control.error = -1; // unknown: the scheme does not settle
     context.upload(data.control, 0, &control, sizeof control);
     context.barrier(fg::Access::StorageRead);
     const gpu::LpvMeasureParams params{0, uint32_t(data.groups.x * data.groups.y * data.groups.z),

@@ -11,45 +11,45 @@ constexpr const char* kAxisNames[] = {"x", "y", "z"};
 const SettingDesc kLpvSettings[] = {
     TYNDALL_INT(
         LpvSettings, resolution, "gi.lpv.resolution", "Lattice cells", "", 4, 64, 32,
-        "Cells along the longest side of the finest lattice; the others follow from its shape."),
+        "Cells along the longest side of the finest lattice. More resolve finer detail; time and memory grow with the cube."),
     TYNDALL_INT(
-        LpvSettings, cascades, "gi.lpv.cascades", "Lattices", "", 1, 4, 4,
-        "Lattices at most: one around what is in the scene, coarser ones around it out to the landscape."),
+        LpvSettings, cascades, "gi.lpv.cascades", "Nested lattices", "", 1, 4, 4,
+        "Maximum number of lattices: one around the objects of the scene, coarser ones around it out to the landscape. More reach farther and cost a lattice each."),
     TYNDALL_FLOAT(
-        LpvSettings, extent, "gi.lpv.extent", "Extent of the finest", "m", 0.0f, 1e6f, 0.0f,
-        "Longest side of the finest lattice; shorter than the scene it follows the camera. 0: from the scene."),
+        LpvSettings, extent, "gi.lpv.extent", "Finest extent", "m", 0.0f, 1e6f, 0.0f,
+        "Longest side of the finest lattice; if it is shorter than the scene, the lattice follows the camera. Shorter is sharper nearby; 0 fits the scene."),
     TYNDALL_INT(
-        LpvSettings, steps, "gi.lpv.steps", "Steps a frame", "", 2, 4096, 256,
-        "Steps in a frame at most: they end where light is settled, and go on in the next frame where it is not."),
+        LpvSettings, steps, "gi.lpv.steps", "Steps per frame", "", 2, 4096, 256,
+        "Maximum propagation steps in a frame; they end early when light has settled, else continue in the next frame. More settle sooner and cost time."),
     TYNDALL_FLOAT(
         LpvSettings, tolerance, "gi.lpv.tolerance", "Settled below", "", 0.0f, 1.0f, 0.002f,
-        "Steps end when what is left to come, over what there is, is estimated to be less."),
-    TYNDALL_INT(LpvSettings, rsmSize, "gi.lpv.rsmSize", "Map size", "texels", 16, 2048, 128,
-                "Side of a reflective shadow map: of each light, of each of its six directions."),
+        "Steps end when the estimated remaining light, over the light that is there, is below this. Lower is more accurate and takes more steps."),
+    TYNDALL_INT(
+        LpvSettings, rsmSize, "gi.lpv.rsmSize", "Shadow map size", "texels", 16, 2048, 128,
+        "Side of each reflective shadow map. Larger maps inject light more evenly and cost time with their area."),
     TYNDALL_INT(
         LpvSettings, rsmLights, "gi.lpv.rsmLights", "Lights", "", 1, 1024, 64,
-        "Lights whose light is propagated, the strongest first and those of the environment last; the others light directly alone."),
-    TYNDALL_INT(LpvSettings, rsmRectPoints, "gi.lpv.rsmRectPoints", "Points of a rect", "", 1, 64,
-                4, "Points of a rectangular light that have reflective shadow maps."),
+        "Lights whose light is propagated, the strongest first and those of the environment last; the others give direct light alone. More cost a map each."),
+    TYNDALL_INT(
+        LpvSettings, rsmRectPoints, "gi.lpv.rsmRectPoints", "Rect light points", "", 1, 64, 4,
+        "Points of a rect light that have reflective shadow maps. More represent large panels better and cost maps."),
     TYNDALL_BOOL(LpvSettings, reflected, "gi.lpv.reflected", "Reflected light", true,
-                 "Light that surfaces reflect goes into the lattice."),
+                 "Injects light that surfaces reflect. Off shows the light of media alone."),
     TYNDALL_BOOL(LpvSettings, scattered, "gi.lpv.scattered", "Scattered light", true,
-                 "Light that media scatter once goes into the lattice."),
+                 "Injects light that media scatter once. Off shows the light of surfaces alone."),
     TYNDALL_BOOL(
         LpvSettings, keep, "gi.lpv.keep", "Keep light", true,
-        "Where nothing has changed light is kept from frame to frame; off: found anew in each, to be timed."),
+        "Keeps light from frame to frame while nothing changes. Off propagates all of it again in each frame, for timing."),
     TYNDALL_ENUM(
         LpvSettings, march, "gi.lpv.march", "March resolution", kMarchNames, 1,
-        "Rays along which media show the lattices' light: for every pixel, every 2x2 or every 4x4 pixels; upsampled as media.march.refine and the tolerances "
-        "beside it say."),
+        "One ray through media for each pixel, each 2x2 or each 4x4 pixels. Fewer are faster and blur outlines; refinement follows the media.march settings."),
     TYNDALL_ENUM(
         LpvSettings, show, "gi.lpv.show", "Show", kShowNames, 0,
-        "A slice of the finest lattice in the picture: its light, where light goes, the depth of a cell of medium (2: white), its surfaces, what the last "
-        "step changed (a tenth: white), the part of the light that media and surfaces absorb."),
-    TYNDALL_ENUM(LpvSettings, showAxis, "gi.lpv.showAxis", "Across", kAxisNames, 2,
-                 "The axis that the slice is across."),
-    TYNDALL_FLOAT(LpvSettings, showAt, "gi.lpv.showAt", "At", "", 0.0f, 1.0f, 0.5f,
-                  "Where on that axis: 0 the lattice's one end, 1 its other."),
+        "Draws a slice of the finest lattice: fluence, directions, optical depth of a cell (2 is white), surfaces, change of the last step (a tenth is white), or the part of light that is absorbed."),
+    TYNDALL_ENUM(LpvSettings, showAxis, "gi.lpv.showAxis", "Slice axis", kAxisNames, 2,
+                 "The axis that the slice is perpendicular to."),
+    TYNDALL_FLOAT(LpvSettings, showAt, "gi.lpv.showAt", "Slice position", "", 0.0f, 1.0f, 0.5f,
+                  "Position of the slice on its axis: 0 is one end of the lattice, 1 the other."),
 };
 
 constexpr PresetEntry kLpvPresets[] = {

@@ -1,12 +1,12 @@
 #pragma once
-// A slice of a lattice in the picture, for people who want to see what it does.
+// Debug view: a slice of a lattice in the picture.
 
 #include "volumetric_gi/lpv/lpv_light.h"
 #include "volumetric_gi/lpv/lpv_settings.h"
 
 namespace tyndall::volumetric_gi {
 
-/// The picture with a slice drawn into it as settings say; `color` where they show nothing.
+/// The picture with the slice that the settings select; `color` if they select none.
 [[nodiscard]] fg::TextureHandle addLatticeSlice(fg::FrameGraph& graph,
                                                 const plugin::FrameInputs& inputs,
                                                 const LpvSettings& settings, const Lattice& lattice,

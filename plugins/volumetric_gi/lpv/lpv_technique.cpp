@@ -12,8 +12,8 @@
 namespace tyndall::volumetric_gi {
 namespace {
 
-/// Of the light that a lattice mixes all can be told apart by receiver. What surfaces or media have scattered once before comes from a lattice into which
-/// nothing else goes, and in which nothing is scattered on.
+/// A lattice mixes terms, but separates receivers. Light that surfaces or media have scattered once before comes from a lattice that has no other
+/// sources and does not scatter.
 constexpr TermSet kFromSurfaces = terms(Term::LSSE, Term::LSVE),
                   kFromMedia = terms(Term::LVSE, Term::LVVE), kOnce = kFromSurfaces | kFromMedia;
 constexpr TermSet kSets[] = {kIndirectOnSurfaces | kIndirectInMedia,
@@ -65,7 +65,7 @@ gpu::LpvInjectParams injectParams(const dvec3& power) {
 
 } // namespace
 
-/// Of everything that a lattice's light follows from, and of the coarser ones' (`place`: the keys of these and of its own place).
+/// Key of everything that a lattice's light depends on, coarser lattices included (`place`: their keys and that of its own place).
 uint64_t LpvTechnique::sourceKey(const plugin::FrameInputs& inputs, uint64_t place) const {
     return cacheKey(place, inputs.scene.geometry, inputs.scene.materials, inputs.scene.media,
                     settings_.rsmSize, settings_.rsmLights, settings_.rsmRectPoints,
@@ -147,7 +147,7 @@ void LpvTechnique::nameStatistics(size_t lattices) {
         statistics_[k].name = statisticNames_[k].c_str();
 }
 
-/// The coarsest first: each lattice begins with the light of the one around it, and gets what comes in from there.
+/// The coarsest first: each lattice begins with the light of the one around it, and receives the light that enters from there.
 LatticeLight LpvTechnique::addLight(fg::FrameGraph& graph, const plugin::FrameInputs& inputs,
                                     std::vector<Lattice>& lattices, const SharedPlaces& places,
                                     fg::BufferHandle& control) {
@@ -159,7 +159,7 @@ LatticeLight LpvTechnique::addLight(fg::FrameGraph& graph, const plugin::FrameIn
         place = cacheKey(place, lattice.level.key);
         const uint64_t key = sourceKey(inputs, place);
         if (outer) lattice.sources = addInflow(graph, lattice, *outer);
-        // Light goes on from where the last frame left it only where nothing has changed since: a picture never shows what was.
+        // Light continues from the last frame only if nothing has changed since: a picture never has light of an earlier scene.
         const Flux flux = addSteps(graph, lattice, outer,
                                    {int(i), settings_.steps, settings_.tolerance,
                                     settings_.keep && stateKeys_[i] == key, inputs.statistics},
@@ -176,13 +176,13 @@ const plugin::TechniqueInfo& LpvTechnique::info() const {
     static constexpr plugin::TechniqueInfo kInfo{
         .name = "lpv",
         .title = "Light propagation volume",
-        .help = "Light that surfaces reflect and media scatter, propagated in a lattice: all indirect light.",
+        .help = "Propagates light that surfaces reflect and media scatter through a lattice: all indirect light.",
         .claims = kIndirectOnSurfaces | kIndirectInMedia,
         .sets = kSets,
         .setCount = uint32_t(std::size(kSets)),
         .media = kAllMedia,
         .separatesMedia = 1,
-        .automatic = 0, // seconds a frame without a GPU: who wants it asks for it
+        .automatic = 0, // seconds a frame without a GPU: only on request
         .cost = 3,
         .errorOnSurfaces = 0.15f,
         .errorInMedia = 0.03f};

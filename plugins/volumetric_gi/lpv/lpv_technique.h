@@ -1,6 +1,6 @@
 #pragma once
-// Light propagation volumes (Billeter, Sintorn and Assarsson 2012), corrected: lattices that are seeded with the light that surfaces reflect
-// and media scatter once, and in which it is propagated with extinction and scattering. docs/techniques/lpv.md tells how.
+// Light propagation volumes (Billeter, Sintorn and Assarsson 2012), corrected: light that surfaces reflect and media scatter once
+// is injected into lattices and propagated with extinction and scattering. docs/techniques/lpv-explained.md explains it.
 
 #include <array>
 #include <string>
@@ -20,12 +20,12 @@ public:
     using GiTechnique::GiTechnique;
     const plugin::TechniqueInfo& info() const override;
     plugin::SettingsTable settings() override;
-    /// Light of the lattices on surfaces and in media, as far as `inputs.terms` asks for it: all of it, or what surfaces or media (or both) have
-    /// scattered once before. Says once through the host how many lights have no map.
-    /// As printed: by the scheme as the paper prints it, in one lattice around the scene and from nothing each frame.
+    /// Light of the lattices on surfaces and in media, for `inputs.terms`: all of it, or light that surfaces or media (or both) have
+    /// scattered once before. Logs once how many lights have no map.
+    /// gi.mode=paper: the scheme as the paper prints it, in one lattice around the scene and from nothing in each frame.
     plugin::FrameOutputs addPasses(fg::FrameGraph& graph,
                                    const plugin::FrameInputs& inputs) override;
-    /// A slice of the finest lattice, where settings ask for it.
+    /// A slice of the finest lattice, if settings select one.
     fg::TextureHandle addDebugView(fg::FrameGraph& graph, const plugin::FrameInputs& inputs,
                                    fg::TextureHandle color) override;
 
@@ -39,8 +39,8 @@ private:
     [[nodiscard]] uint64_t sourceKey(const plugin::FrameInputs& inputs, uint64_t place) const;
 
     LpvSettings settings_{};
-    uint32_t saidLeftOut_ = 0; // lights without maps, when it was last said
-    // sourceKey() of what is in the deposits and in the flux buffers.
+    uint32_t saidLeftOut_ = 0; // lights without maps, when last logged
+    // sourceKey() of the contents of the deposits and of the flux buffers.
     std::array<uint64_t, gpu::kLpvMostLevels> depositKeys_{}, stateKeys_{};
     Lattice finest_; // of this frame
     LatticeLight light_;

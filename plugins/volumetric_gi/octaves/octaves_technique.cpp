@@ -7,17 +7,20 @@ namespace tyndall::volumetric_gi {
 namespace {
 
 const SettingDesc kOctavesSettings[] = {
-    TYNDALL_INT(OctavesSettings, count, "gi.octaves.count", "Octaves", "", 0, 16, 7,
-                "Octaves beyond single scattering; 0 turns the technique off."),
+    TYNDALL_INT(
+        OctavesSettings, count, "gi.octaves.count", "Octaves", "", 0, 16, 7,
+        "Octaves beyond single scattering. More brighten the inside of dense media and cost march time; 0 turns the technique off."),
     TYNDALL_FLOAT(
-        OctavesSettings, scatteringFactor, "gi.octaves.scatteringFactor", "Scattering factor", "",
-        0, 1, 0.5,
-        "Each octave scatters so much of the one before; energy stays bounded while it is no larger than the extinction factor."),
-    TYNDALL_FLOAT(OctavesSettings, extinctionFactor, "gi.octaves.extinctionFactor",
-                  "Extinction factor", "", 0, 1, 0.5,
-                  "Each octave's light meets so much of the optical depth of the one before."),
-    TYNDALL_FLOAT(OctavesSettings, phaseFactor, "gi.octaves.phaseFactor", "Phase factor", "", 0, 1,
-                  0.5, "Each octave scatters with so much of the anisotropy of the one before."),
+        OctavesSettings, scatteringFactor, "gi.octaves.scatteringFactor", "Scattering factor", "", 0,
+        1, 0.5,
+        "Scattering of each octave over that of the one before. Higher is brighter; energy stays bounded if it is at most the extinction factor."),
+    TYNDALL_FLOAT(
+        OctavesSettings, extinctionFactor, "gi.octaves.extinctionFactor", "Extinction factor", "", 0,
+        1, 0.5,
+        "Optical depth to the light of each octave over that of the one before. Lower lets light reach deeper."),
+    TYNDALL_FLOAT(
+        OctavesSettings, phaseFactor, "gi.octaves.phaseFactor", "Phase factor", "", 0, 1, 0.5,
+        "Anisotropy of each octave over that of the one before. Higher keeps the direction of light longer."),
 };
 
 constexpr PresetEntry kOctavesPresets[] = {
@@ -35,7 +38,7 @@ const plugin::TechniqueInfo& OctavesTechnique::info() const {
         .name = "octaves",
         .title = "Octaves of multiple scattering",
         .help =
-            "Baseline: multiple scattering as reduced copies of single scattering, inside the march.",
+            "Baseline: estimates multiple scattering in media by reduced copies of single scattering.",
         .claims = kSets[0],
         .sets = kSets,
         .setCount = 1,

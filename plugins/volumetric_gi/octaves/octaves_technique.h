@@ -18,7 +18,7 @@ public:
     using GiTechnique::GiTechnique;
     const plugin::TechniqueInfo& info() const override;
     plugin::SettingsTable settings() override;
-    /// The octaves 1 … count. Skipped where no medium scatters or no octave is asked for. It has no paper mode of its own.
+    /// The octaves 1 … count. Skipped if no medium scatters or count is 0. It has no paper mode of its own.
     plugin::FrameOutputs addPasses(fg::FrameGraph& graph,
                                    const plugin::FrameInputs& inputs) override;
 

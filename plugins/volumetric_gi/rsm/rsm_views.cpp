@@ -45,7 +45,7 @@ public:
         for (size_t i = 0; i < boxes_.size(); ++i) {
             const dvec3 centre = boxes_[i].centre();
             const double radius = 0.5 * glm::length(boxes_[i].extent());
-            // From before all of the scene: whatever stands there throws its shadow into the box.
+            // From outside the scene: surfaces in between cast their shadows into the box.
             const double before = 0.5 * glm::dot(bounds_.extent(), glm::abs(travel)) +
                                   std::abs(glm::dot(bounds_.centre() - centre, travel)) + radius;
             RsmView v = make(light, lookingAlong(centre - before * travel, travel));
@@ -60,7 +60,7 @@ public:
                         double ball, double share) {
         RsmView v = make(light, lookingAlong(from, forward));
         v.view.yfov = float(yfov);
-        // Within its ball a lamp shines through; else as near as single precision of depth allows.
+        // Surfaces inside a lamp's ball do not block it; else as near as single precision of depth allows.
         v.view.nearest = float(std::max(ball, 1e-4 * radius_));
         v.share = float(share);
         plan_.views.push_back(v);
@@ -97,7 +97,7 @@ void addLight(Planner& planner, uint32_t index, const gpu::LightData& light, int
     const dvec3 position = rgb(light.position), direction = rgb(light.direction);
     if (light.type == gpu::kLightDirectional) return planner.addParallel(index, direction);
     if (light.type == gpu::kLightRect) {
-        // Middles of equal rows, and of equal parts of each: the points' mean is the rect's middle.
+        // Centres of equal rows, and of equal parts of each: the points' mean is the rect's centre.
         const int rows = std::max(int(std::lround(std::sqrt(rectPoints))), 1);
         for (int row = 0; row < rows; ++row) {
             const int columns = rectPoints * (row + 1) / rows - rectPoints * row / rows;
@@ -132,7 +132,7 @@ RsmPlan planRsm(std::span<const gpu::LightData> lights, const Bounds& bounds,
     };
     for (uint32_t i = 0; i < lights.size(); ++i)
         if (strength(i) > 0) order.push_back(i);
-    // The environment's last: much of their power falls on roofs, and they are many and alike.
+    // Lights of the environment last: much of their power falls on roofs, and they are many and similar.
     const auto ofScene = [&](uint32_t i) {
         return (lights[i].flags & gpu::kLightFromEnvironment) == 0;
     };

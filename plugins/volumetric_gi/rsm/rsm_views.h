@@ -1,5 +1,5 @@
 #pragma once
-// Where reflective shadow maps look from: the views of the strongest lights.
+// Views of reflective shadow maps: those of the strongest lights.
 
 #include <cstdint>
 #include <span>
@@ -13,14 +13,14 @@ namespace tyndall::volumetric_gi {
 struct RsmView {
     plugin::SurfaceView view{};
     uint32_t light = 0;
-    float share = 1;     // of the light's power that this point of it stands for
+    float share = 1;     // part of the light's power that this point represents
     float texelArea = 0; // m², parallel views
-    int box = -1;        // the box that it is for; -1: all
+    int box = -1;        // the box that it lights; -1: all
 };
 
 struct RsmPlan {
     std::vector<RsmView> views;
-    std::vector<dvec3> power; // by box, watts: what leaves all its lights through their views
+    std::vector<dvec3> power; // by box, watts: power that leaves all lights through their views
     uint32_t lightsLeftOut = 0;
 };
 

@@ -1,5 +1,5 @@
 #pragma once
-// What this plugin's techniques derive from, and what they have in common.
+// The base class of this plugin's techniques, and what they share.
 
 #include <cstddef>
 #include <memory>
@@ -10,14 +10,14 @@
 
 namespace tyndall::volumetric_gi {
 
-/// Which equations a technique computes with: gi.mode.
+/// Which equations a technique uses: gi.mode.
 enum class Mode : int32_t { Corrected = 0, Paper = 1 };
 
-/// Of all techniques of the plugin; it outlives them.
+/// Shared by all techniques of the plugin; it outlives them.
 struct SharedParts {
     plugin::Host* host = nullptr; // from the plugin's set-up on
     Mode mode = Mode::Corrected;
-    TracedScene traced; // update() it before use: once a frame that costs something
+    TracedScene traced; // update() it before use; only the first call in a frame costs time
 };
 
 class GiTechnique : public plugin::Technique {

@@ -1,5 +1,5 @@
 #pragma once
-// A march along the eye's rays that gathers the scene's own lights, with their shadows, in the media: what techniques without a structure of their own are.
+// A march along eye rays through media that gathers the scene's lights with their shadows: all that a technique without a data structure of its own needs.
 
 #include "plugin/plugin_api.h"
 #include "plugin/reduced_march.h"

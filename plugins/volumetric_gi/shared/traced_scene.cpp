@@ -16,7 +16,7 @@ static_assert(offsetof(gpu::TracedTreeNode, next) == offsetof(tracing::TreeNode,
 static_assert(offsetof(gpu::TracedTreeNode, triangle) == offsetof(tracing::TreeNode, triangle));
 static_assert(gpu::kNoTriangle == tracing::TreeNode::kInner);
 
-/// Of surfaces, and of lights but for glowing media. Versions tell that nodes have moved, not which.
+/// Of surfaces, and of lights except glowing media. Versions show that nodes have moved, not which.
 struct Keys {
     uint64_t shapes; // surfaces, wherever they are
     uint64_t surfaces, lights;
@@ -51,7 +51,7 @@ Bounds boundsOf(const float (&minimum)[4], const float (&maximum)[4]) {
     return bounds;
 }
 
-/// Outwards to eighths of a power of two: what moves a little leaves it as it is.
+/// Rounded outwards to eighths of a power of two, so that small movements do not change it.
 Bounds roughly(const Bounds& bounds) {
     if (bounds.empty()) return bounds;
     const dvec3 extent = bounds.extent();
@@ -96,7 +96,7 @@ Result<void> TracedScene::updateSurfaces(const Scene& scene, const dvec3& origin
     return {};
 }
 
-/// Surfaces that are what they were, but not all where they were.
+/// The same surfaces as before, some of them moved.
 bool TracedScene::moveSurfaces(const Scene& scene, const dvec3& origin) {
     std::vector<uint32_t> moved;
     tracing::SurfaceScene& surfaces = *scene_.surfaces;
@@ -124,7 +124,7 @@ void TracedScene::updateMedia(const Scene& scene, const dvec3& origin, bool useP
     auto actual = std::make_unique<tracing::MediaField>(scene, origin);
     if (useProxies) {
         tracing::ProxyMedia made = tracing::makeProxyMedia(scene, origin);
-        // Paths that are kept name the media that they went through: these stay while nothing about them changes.
+        // Kept paths point to their media, which therefore stay while nothing about them changes.
         if (!proxies || made.hash != proxyHash_)
             proxies = std::make_unique<tracing::MediaField>(std::move(made.field));
         proxyHash_ = made.hash;

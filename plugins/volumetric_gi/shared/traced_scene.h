@@ -1,5 +1,5 @@
 #pragma once
-// The scene as rays of the processor see it, with its triangles for shaders: made anew where it has changed. One instance serves all techniques of the plugin.
+// The scene for rays on the processor, with its triangles for shaders; parts that change are built again. One instance serves all techniques of the plugin.
 
 #include "plugin/plugin_api.h"
 #include "shared/traced.h"
@@ -27,41 +27,41 @@ template <typename Command> Command& bindTraced(Command& command, const TracedBu
 }
 
 struct TracedSceneOptions {
-    /// Paths are to go through media that small changes of the media do not change (tracing/proxy_media.h).
+    /// Paths go through proxy media, which small changes of the media do not change (tracing/proxy_media.h).
     bool proxyMedia = false;
 };
 
 class TracedScene {
 public:
-    /// What has not changed since the last call stays, so that a second technique's call in a frame costs nothing. Where it asks for other options, media
-    /// and lights are made anew for it, but not surfaces; proxy media live on meanwhile, for paths that are kept name them.
+    /// Parts that have not changed since the last call stay, so that a second technique's call in a frame costs nothing. With other options media
+    /// and lights are built again, but not surfaces; proxy media stay alive, because kept paths point to them.
     /// Errors: the surfaces do not fit into memory.
     Result<void> update(const plugin::FrameInputs& inputs, const TracedSceneOptions& options);
 
     // As of the last update().
 
-    /// What paths go through.
+    /// The media and surfaces that paths go through.
     [[nodiscard]] const tracing::TracerScene& scene() const { return scene_; }
     [[nodiscard]] const tracing::LightEmission& emission() const { return *emission_; }
-    /// Around what is in the scene, without the landscape that it stands in; render space.
+    /// Around the objects of the scene, without the landscape around them; render space.
     [[nodiscard]] const Bounds& content() const { return content_; }
     /// Are the media there proxies?
     [[nodiscard]] bool usesProxies() const { return usesProxies_; }
-    /// The media as they are.
+    /// The actual media.
     [[nodiscard]] const tracing::MediaField& media() const {
         return usesProxies_ ? *otherMedia_ : *scene_.media;
     }
     /// All triangles, and a tree over them, as shaders read them.
     [[nodiscard]] const std::vector<gpu::TracedTriangle>& triangles() const { return triangles_; }
     [[nodiscard]] const std::vector<tracing::TreeNode>& tree() const { return tree_; }
-    /// Are there triangles that rays pass parts of?
+    /// Are there triangles with holes?
     [[nodiscard]] bool hasHoles() const { return hasHoles_; }
-    /// Of everything that walks' courses follow from, of what they carry, and of the surfaces alone.
+    /// Of everything that the paths of walks depend on, of everything that their power depends on, and of the surfaces alone.
     [[nodiscard]] uint64_t walksKey() const { return walksKey_; }
     [[nodiscard]] uint64_t key() const { return key_; }
     [[nodiscard]] uint64_t surfacesKey() const { return surfacesKey_; }
 
-    /// Triangles and tree on the GPU: uploaded for the first who asks in a frame, the same for all others.
+    /// Triangles and tree on the GPU: uploaded at the first call in a frame; later calls return the same.
     [[nodiscard]] const TracedBuffers& buffers(fg::FrameGraph& graph);
     /// Handles end with their frame: to be called when all of its passes have been added.
     void endFrame() { buffers_ = {}; }
@@ -73,7 +73,7 @@ private:
 
     tracing::TracerScene scene_;
     std::unique_ptr<tracing::MediaField>
-        otherMedia_; // where those in scene_ are proxies, the media as they are; else the last proxies, if any
+        otherMedia_; // if those in scene_ are proxies, the actual media; else the last proxies, if any
     std::unique_ptr<tracing::LightEmission> emission_;
     Bounds content_;
     std::vector<gpu::TracedTriangle> triangles_;

@@ -5,7 +5,7 @@
 namespace tyndall::volumetric_gi {
 namespace {
 
-/// Of the distance to a surface that an eye ray passes: on from behind it.
+/// Relative offset behind a surface that an eye ray passes.
 constexpr double kPassed = 1e-6;
 
 } // namespace
@@ -34,12 +34,12 @@ tracing::RayHit BiasCompensation::opaqueHit(const tracing::CameraRays::CameraRay
     return hit;
 }
 
-/// On from a path's first vertex, to where nobody else has gathered.
+/// Continues from a path's first vertex to light that the GPU has not gathered.
 void BiasCompensation::follow(Vertex& vertex) {
     const ClampDistances clamped = clampedOnGpu(vertex);
     if (!path_.nearVertex(vertex, clamped)) return;
     if (!vertex.onSurface()) {
-        // The GPU has gathered what is scattered there once, and what virtual lights bring within the relaxed distance.
+        // The GPU has gathered direct light there, and virtual lights down to the relaxed distance.
         const double relaxed = clamped.ofMedia / clamps_.relaxed;
         const double ofSurfaces = path_.scaleAt(vertex.position) * clamps_.fromSurfacesToMedia;
         if (!path_.nearVertex(vertex, {std::min(ofSurfaces, relaxed), relaxed}) ||

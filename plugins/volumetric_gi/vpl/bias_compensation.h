@@ -1,5 +1,5 @@
 #pragma once
-// Paths on the processor that bring what clamped virtual lights take away and the GPU's own compensation, one step in media, misses.
+// Compensation paths on the processor: they add the light that clamping removes and that the GPU's own compensation, one step in media, does not add.
 
 #include "tracing/virtual_light_path.h"
 
@@ -9,8 +9,8 @@ namespace tyndall::volumetric_gi {
 /// Metres in the ball of the path's settings; in media a clamp distance reaches no farther than the free path at the receiver.
 struct GpuClamps {
     double betweenSurfaces = 0, ofMedia = 0;
-    double fromSurfacesToMedia = 0; // where it is less than ofMedia
-    double relaxed = 1; // ratio of the clamp distance to that with which the step's end gathers
+    double fromSurfacesToMedia = 0; // if it is less than ofMedia
+    double relaxed = 1; // clamp distance over that at the end of the step
 };
 
 /// One for each thread.
@@ -20,12 +20,12 @@ public:
                      const tracing::VirtualLightPathSettings& settings, const GpuClamps& clamps)
         : path_(scene, emission, settings), clamps_(clamps) {}
 
-    /// What the GPU misses of the light that leaves the surface that an eye ray meets first towards the eye, without media on that way.
-    /// Surfaces of partial coverage (BLEND) are passed by the eye ray.
+    /// Light missing on the GPU that leaves the first surface on an eye ray towards the eye, without the media in between.
+    /// The eye ray passes surfaces of partial coverage (BLEND).
     /// Returns that surface, good until the next path; null where there is none.
     const tracing::Surface* traceOnSurface(const tracing::CameraRays::CameraRay& start,
                                            tracing::Sampler& sampler, tracing::TermLight& light);
-    /// The same of light that media before that surface scatter to the eye, as it arrives there.
+    /// The same for light that media before that surface scatter to the eye, as it arrives there.
     void traceInMedia(const tracing::CameraRays::CameraRay& start, tracing::Sampler& sampler,
                       tracing::TermLight& light);
     [[nodiscard]] tracing::PathCounts counts() const { return path_.counts(); }

@@ -9,7 +9,7 @@ namespace tyndall::volumetric_gi {
 namespace {
 
 constexpr double kDielectricF0 = 0.04;
-/// Black surfaces mirror no less than this.
+/// Lower limit of the reflectance of black surfaces.
 constexpr double kLeastReflectance = 1e-3;
 
 dvec3 reflectance(const tracing::Surface& surface) {
@@ -19,7 +19,7 @@ dvec3 reflectance(const tracing::Surface& surface) {
 }
 
 using Tracers = tbb::enumerable_thread_specific<BiasCompensation>;
-/// Light that a path brings to an eye ray.
+/// Light that a path adds to an eye ray.
 using Trace = dvec3 (*)(BiasCompensation&, const tracing::CameraRays::CameraRay&,
                         tracing::Sampler&);
 
@@ -37,7 +37,7 @@ dvec3 missedInMedia(BiasCompensation& tracer,
     return light.sum();
 }
 
-/// Mean over a square's paths, square by square. `kind` tells random numbers apart.
+/// Mean over a square's paths, square by square. `kind` separates the random numbers.
 std::vector<vec4> missed(Trace trace, Tracers& tracers, const gpu::ViewData& view, int edge,
                          uint64_t kind, const CompensationOrder& order) {
     const auto size = uvec2(view.size.x, view.size.y);

@@ -1,5 +1,5 @@
 #pragma once
-// What clamping takes away and the GPU does not compensate: followed by paths on the processor (Kollig and Keller 2004), for squares of pixels.
+// Light that clamping removes and the GPU does not compensate, by paths on the processor (Kollig and Keller 2004), for squares of pixels.
 
 #include "volumetric_gi/vpl/bias_compensation.h"
 #include "shared/view.h"
@@ -10,10 +10,10 @@ namespace tyndall::volumetric_gi {
 tracing::CameraRays::CameraRay eyeRay(const gpu::ViewData& view, const dvec2& ndc);
 
 struct CompensationOrder {
-    // Pixels along an edge of a square; which of them stands for it says marchedPixel() in shaders/media/nearest_rays.glsl.
+    // Pixels along an edge of a square; marchedPixel() in shaders/media/nearest_rays.glsl chooses the pixel that represents it.
     int surfaceFactor = 1, mediaFactor = 1;
     uint32_t paths = 1; // of each square
-    uint32_t first = 0; // number of its first path: others bring other light
+    uint32_t first = 0; // number of its first path; other numbers are other random numbers
     bool onSurfaces = true, inMedia = true;
     tracing::VirtualLightPathSettings path;
     GpuClamps clamps;
@@ -24,10 +24,10 @@ struct CompensationLight {
     std::vector<vec4>
         onSurfaces; // nits that leave surfaces towards the eye over reflectance() in shaders/gi/shared/surface_light.glsl
     std::vector<vec4> inMedia; // nits that media scatter to the eye
-    uint64_t nonFinite = 0;    // lights that were left out because they were no numbers
+    uint64_t nonFinite = 0;    // contributions left out because they were not finite
 };
 
-/// The mean over paths is what gathering with `order.clamps` misses.
+/// Means over paths: the light that gathering with `order.clamps` lacks.
 CompensationLight compensationLight(const gpu::ViewData& view, const tracing::TracerScene& scene,
                       const tracing::LightEmission& emission, const CompensationOrder& order);
 

@@ -11,15 +11,15 @@
 namespace tyndall::volumetric_gi {
 namespace {
 
-/// Of a mean light's worth, so much has each at least: points are few, and may miss what a light gives. A light that is kept carries three times what it
-/// would without a choice at most.
+/// Least importance of a light over the mean: points are few, and may not receive a light that matters elsewhere. A kept light carries at most three
+/// times its own power.
 constexpr double kLeastWorth = 0.5;
-/// Points that a light is asked about: a ray each.
+/// Points that a light is tested against, with one ray each.
 constexpr size_t kPointsOfLight = 32;
-/// Chances are met to within this by so many halvings.
+/// Halvings that find the scale of probabilities.
 constexpr int kHalvings = 60;
 
-/// What a light gives to a point, watts per square metre and the like: only ratios count.
+/// Contribution of a light to a point, in any unit: only ratios count.
 double givenTo(const SeenPoint& point, const tracing::WalkVertex& light,
                const tracing::SurfaceScene& surfaces, const tracing::MediaField& media,
                double least, tracing::Sampler& sampler) {
@@ -51,8 +51,8 @@ uint32_t mortonCode(const dvec3& place) {
     return code;
 }
 
-/// Which lights to keep, each with the chance min(1, scale · worth): a light is where the sum of chances reaches a whole number, light by light along a
-/// curve through space, so that each region keeps as many as it should to within one.
+/// Which lights to keep, each with the probability min(1, scale · importance): a light is kept where the sum of probabilities, along a space-filling curve, reaches a
+/// whole number, so that each region keeps its expected number to within one.
 std::vector<bool> inTurn(const std::vector<const tracing::WalkVertex*>& lights,
                          const std::vector<double>& worth, double scale, uint64_t seed) {
     Bounds around;
@@ -108,9 +108,9 @@ void chooseLights(Walks& walks, const std::vector<SeenPoint>& seen,
     for (const auto& walk : walks.vertices)
         for (const tracing::WalkVertex& light : walk) lights.push_back(&light);
     if (lights.empty() || double(lights.size()) <= wanted) return;
-    // Of what a point gets each light has a part: dark places matter as much as bright ones. A light is asked about every so many points alone.
+    // A light's part of the light of each point: dark places matter as much as bright ones. A light is tested against a subset of the points.
     const size_t stride = std::max<size_t>(seen.size() / kPointsOfLight, 1);
-    // Its worth is the root of the sum of their squares: with chances in proportion to that the sum of all points' variances is least.
+    // Its importance is the root of the sum of their squares: probabilities in proportion to it minimise the sum of the variances of all points.
     std::vector<std::vector<double>> parts(seen.size());
     tbb::parallel_for(size_t(0), seen.size(), [&](size_t p) {
         double sum = 0;
@@ -127,7 +127,7 @@ void chooseLights(Walks& walks, const std::vector<SeenPoint>& seen,
     for (double& w : worth) w = std::sqrt(w);
     const double mean = std::accumulate(worth.begin(), worth.end(), 0.0) / double(lights.size());
     for (double& w : worth) w += mean > 0 ? kLeastWorth * mean : 1;
-    // The chance is min(1, scale · worth): the scale with which as many are kept as are wanted.
+    // The probability is min(1, scale · importance), with the scale that keeps the wanted number.
     const auto kept = [&](double scale) {
         double sum = 0;
         for (const double w : worth) sum += std::min(1.0, scale * w);

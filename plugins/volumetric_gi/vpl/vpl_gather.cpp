@@ -10,12 +10,12 @@
 namespace tyndall::volumetric_gi {
 namespace {
 
-/// Grids are marched in steps even where frames are averaged: cell by cell a ray takes more rounds of loops than llvmpipe grants it.
+/// Grids are marched in steps even in averaged frames: cell by cell a ray takes more rounds of loops than llvmpipe allows.
 int32_t steppedKinds(const MediaResources& media, bool towardsLights) {
     return mediaKinds(media, towardsLights) & ~int32_t(gpu::kMediaExactGrids);
 }
 
-/// What every pass that gathers reads.
+/// Resources that every gathering pass reads.
 struct GatherData {
     MarchPass march;
     GBuffer gbuffer; // of surfaces
@@ -30,7 +30,7 @@ void declare(fg::Builder& builder, GatherData& data, const plugin::FrameInputs& 
              const VplBuffers& lights, const VplGather& gather, MarchStage stage, int factor) {
     gpu::MarchParams params = inputs.march;
     params.factor = uint32_t(factor);
-    // Media in view or not: they attenuate what the lights send.
+    // All media, in view or not: they attenuate the lights.
     data.march = readMarch(builder, stage, inputs.view, inputs.media, inputs.gbuffer.depth, params);
     if (inputs.media.count > 0) data.sceneLights = readLights(builder, inputs.lights);
     data.lights = readVpls(builder, lights);
@@ -48,7 +48,7 @@ fg::ComputeCommand begin(const GatherData& data, fg::PassContext& context, const
                  {"PHASE_GROUPS", media ? int32_t(of.phaseGroups) : 1},
                  {"MEDIA_KINDS", media ? steppedKinds(of, true) : 0},
                  {"SOFT_SHADOWS",
-                  0}, // of lights that compensation gathers: what they light is spread anyway
+                  0}, // of lights that compensation gathers: their light is spread by the step anyway
                  {"COMPENSATION", media ? int32_t(mode) : 0}});
     if (media) {
         bindLights(command, data.sceneLights);
@@ -58,12 +58,12 @@ fg::ComputeCommand begin(const GatherData& data, fg::PassContext& context, const
     return command;
 }
 
-/// Light is never even all around a surface: that mode is for media alone.
+/// The closed form assumes even light, which a surface never has: media alone.
 uint32_t surfaceMode(const GatherData& data) {
     return data.params.compensation == gpu::kVplTraced ? gpu::kVplTraced : gpu::kVplClamped;
 }
 
-/// What all shaders of surfaces name.
+/// Bindings of all surface shaders.
 fg::ComputeCommand& bindSurfaces(fg::ComputeCommand& command, const GatherData& data) {
     bindView(command, data.march.view).params(data.march.params);
     return bindGBuffer(command, data.gbuffer);
@@ -88,7 +88,7 @@ fg::TextureHandle addMarch(fg::FrameGraph& graph, const plugin::FrameInputs& inp
                     return builder.skip("no medium in view");
                 declare(builder, data.gather, inputs, lights, gather, stage, gather.mediaFactor);
                 if (stage != MarchStage::Spread)
-                    data.gather.lights.nearMedia = builder.read(lights.nearMedia);
+                    data.gather.lights.pathsInMedia = builder.read(lights.pathsInMedia);
                 data.march = declareLightMarch(builder, data.gather.march, inputs.transmittance,
                                                before, kMarchNames);
             },
@@ -98,7 +98,7 @@ fg::TextureHandle addMarch(fg::FrameGraph& graph, const plugin::FrameInputs& inp
                 auto command =
                     spreads ? context.compute("gi/vpl/upsample.comp")
                             : begin(from, context, "gi/vpl/march.comp", from.params.compensation);
-                if (!spreads) command.bind("VplNear", from.lights.nearMedia);
+                if (!spreads) command.bind("VplPathLight", from.lights.pathsInMedia);
                 bindLightMarch(command, data.march).dispatchOver(data.march.light);
             })
         .march.light;
@@ -143,7 +143,7 @@ fg::BufferHandle addDepthMaps(fg::FrameGraph& graph, const plugin::FrameInputs& 
         .depths;
 }
 
-/// What lights see, from points of surfaces.
+/// Visibility maps from points of surfaces.
 fg::BufferHandle addSplattedMaps(fg::FrameGraph& graph, const VplBuffers& buffers,
                                  fg::BufferHandle places, fg::BufferHandle points,
                                  const gpu::VplPointParams& pointParams,
@@ -205,18 +205,18 @@ VplBuffers addVplUpload(fg::FrameGraph& graph, const plugin::FrameInputs& inputs
     buffers.lights = add("gi.vpl.lights", upload.set->lights, upload.lightsKey);
     buffers.walks = add("gi.vpl.walks", upload.set->walks, upload.mapsKey);
     buffers.traced = upload.traced;
-    buffers.nearSurfaces = add("gi.vpl.nearSurfaces", *upload.nearSurfaces, upload.nearKey);
-    buffers.nearMedia = add("gi.vpl.nearMedia", *upload.nearMedia, upload.nearKey);
+    buffers.pathsOnSurfaces = add("gi.vpl.nearSurfaces", *upload.pathsOnSurfaces, upload.pathsKey);
+    buffers.pathsInMedia = add("gi.vpl.nearMedia", *upload.pathsInMedia, upload.pathsKey);
     if (upload.points->points.empty()) {
         buffers.maps = add("gi.vpl.maps", *upload.maps, upload.mapsKey);
     } else {
-        // Places apart from what lights carry, which changes with media that move while maps stay.
+        // Positions are apart from powers, which change with moving media while maps stay.
         const fg::BufferHandle places = add("gi.vpl.places", upload.set->places, upload.mapsKey),
                                points = add("gi.vpl.points", upload.points->points, upload.mapsKey);
         buffers.maps = addSplattedMaps(graph, buffers, places, points, upload.points->params,
                                        params, upload.mapsKey);
     }
-    // Sizes are rounded up, so that the buffer's alone does not tell maps of one side from those of another.
+    // Buffer sizes are rounded up, so the size alone does not separate maps of different sides.
     const uint64_t depthsKey = cacheKey(upload.lightsKey, params.depthSide);
     buffers.depths = addDepthMaps(graph, inputs, buffers.lights, depthsKey, params);
     return buffers;
@@ -257,7 +257,7 @@ fg::TextureHandle addVplSurfaces(fg::FrameGraph& graph, const plugin::FrameInput
                             gather.surfaceFactor);
                     data.gbuffer = readGBuffer(builder, inputs.gbuffer);
                     data.before = builder.read(squares);
-                    data.lights.nearSurfaces = builder.read(lights.nearSurfaces);
+                    data.lights.pathsOnSurfaces = builder.read(lights.pathsOnSurfaces);
                     if (inputs.transmittance)
                         data.transmittance = builder.read(inputs.transmittance);
                     data.result =
@@ -268,7 +268,7 @@ fg::TextureHandle addVplSurfaces(fg::FrameGraph& graph, const plugin::FrameInput
                     bindSurfaces(command, data)
                         .params(data.params, "Vpl")
                         .bind("squares", data.before)
-                        .bind("VplNear", data.lights.nearSurfaces)
+                        .bind("VplPathLight", data.lights.pathsOnSurfaces)
                         .bind("surfaceRadiance", data.result)
                         .bind("transmittance",
                               data.transmittance ? data.transmittance : data.before)

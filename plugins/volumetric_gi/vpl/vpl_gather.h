@@ -1,5 +1,5 @@
 #pragma once
-// Virtual point lights on the GPU: their buffers, and what they do in the picture.
+// Virtual point lights on the GPU: their buffers, and the light that they give to surfaces and media.
 
 #include "shared/vpl.h"
 #include "volumetric_gi/shared/traced_scene.h"
@@ -11,8 +11,8 @@ namespace tyndall::volumetric_gi {
 struct VplBuffers {
     fg::BufferHandle lights, walks, maps;
     TracedBuffers traced;
-    fg::BufferHandle depths;                  // of grids; null: without
-    fg::BufferHandle nearSurfaces, nearMedia; // CompensationLight
+    fg::BufferHandle depths;                  // optical depth of grids; null: no grids
+    fg::BufferHandle pathsOnSurfaces, pathsInMedia; // CompensationLight
 };
 
 /// Declares that a pass reads them; the result is what bindVpls() takes.
@@ -29,14 +29,14 @@ Command& bindVpls(Command& command, const VplBuffers& buffers, const gpu::VplPar
         .bind("VplDepths", buffers.depths);
 }
 
-/// What goes up; must live until the frame has been executed. `lightsKey`, `mapsKey`, `nearKey`: of its content.
+/// Data to upload; they must live until the frame has been executed. `lightsKey`, `mapsKey`, `pathsKey`: of its content.
 struct VplUpload {
     const VplSet* set = nullptr;
-    const std::vector<uint32_t>* maps = nullptr; // as rays have made them
-    const SurfacePoints* points = nullptr;       // not empty: they are to be splatted into maps
+    const std::vector<uint32_t>* maps = nullptr; // maps by rays
+    const SurfacePoints* points = nullptr;       // not empty: maps are splatted from them
     TracedBuffers traced;
-    const std::vector<vec4>*nearSurfaces = nullptr, *nearMedia = nullptr; // empty: without
-    uint64_t lightsKey = 0, mapsKey = 0, nearKey = 0;
+    const std::vector<vec4>*pathsOnSurfaces = nullptr, *pathsInMedia = nullptr; // empty: no paths
+    uint64_t lightsKey = 0, mapsKey = 0, pathsKey = 0;
 };
 
 /// How lights are gathered.

@@ -60,7 +60,7 @@ std::vector<uint32_t> makeVisibilityMaps(const tracing::SurfaceScene& surfaces, 
                     surfaces.instances()[hit.instance].firstTriangle + hit.triangle;
                 nearest = std::min(nearest, hit.distance);
             }
-            // Between two rays there may be something nearer, but not by much.
+            // Between two rays there may be a nearer surface, but not by much.
             maps[i * stride + texels] =
                 std::bit_cast<uint32_t>(float(std::min(0.5 * nearest, 1e30)));
         }

@@ -11,7 +11,7 @@
 namespace tyndall::volumetric_gi {
 namespace {
 
-/// Of a point's radius over that of a disc of the area that it stands for: discs overlap, so that little is open between them.
+/// Radius of a point over that of a disc of the area that it represents: discs overlap, so that few gaps remain.
 constexpr double kOverlap = 1.75;
 /// Pieces of triangles are no wider than this part of their distance from the lights, so that one weight holds for all of a piece.
 constexpr double kPiece = 0.5;

@@ -12,70 +12,75 @@ constexpr const char* kShowNames[] = {"nothing", "lights", "map", "atlas", "lost
 const SettingDesc kVplSettings[] = {
     TYNDALL_INT(
         VplSettings, walks, "gi.vpl.walks", "Walks", "", 1, 65536, 512,
-        "Random walks from the lights; each leaves a virtual light wherever it is scattered."),
+        "Random walks from the lights; each leaves a virtual light wherever it scatters. More are less noisy; maps and gathering take time in proportion."),
     TYNDALL_INT(
-        VplSettings, candidates, "gi.vpl.candidates", "Walks to choose from", "", 1, 64, 16,
-        "So many times as many walks are traced, and of their virtual lights one in so many is kept: such as matter to the picture. 1: all are, whatever the picture shows."),
+        VplSettings, candidates, "gi.vpl.candidates", "Candidates per walk", "", 1, 64, 16,
+        "Traces this many times as many walks and keeps the virtual lights of highest importance for the view. More are less noisy and cost processor time; 1 keeps all lights."),
     TYNDALL_INT(
-        VplSettings, renewed, "gi.vpl.renewed", "Walks renewed a frame", "", 0, 65536, 0,
-        "After a change of lights or media so many walks are traced anew in each frame, in turn, and light lags behind until all are; of candidates there is no choice then. 0: all at once."),
+        VplSettings, renewed, "gi.vpl.renewed", "Walks renewed per frame", "", 0, 65536, 0,
+        "After a change of lights or media, traces this many walks again in each frame; indirect light lags behind until all are renewed. 0 renews all at once. Turns off candidates."),
     TYNDALL_INT(
-        VplSettings, classes, "gi.vpl.classes", "Classes", "", 1, 1024, 8,
-        "A point along a ray through media gathers one in so many walks; the points before and behind it gather others."),
-    TYNDALL_INT(VplSettings, surfaceClasses, "gi.vpl.surfaceClasses", "Classes on surfaces", "", 1,
-                1024, 1, "A surface gathers one in so many walks, its neighbours others; 1: all."),
+        VplSettings, subsets, "gi.vpl.classes", "Interleaved subsets", "", 1, 1024, 8,
+        "A point on a ray through media gathers one of this many subsets of the walks, the next point another. More are faster and noisier."),
+    TYNDALL_INT(
+        VplSettings, surfaceSubsets, "gi.vpl.surfaceClasses", "Subsets on surfaces", "", 1, 1024, 1,
+        "A surface point gathers one of this many subsets of the walks, its neighbours others. More are faster and noisier; 1 gathers all."),
     TYNDALL_ENUM(
         VplSettings, maps, "gi.vpl.maps", "Visibility maps from", kMapsNames, 0,
-        "What virtual lights see: by rays on the processor, or by points of surfaces that the graphics processor splats."),
-    TYNDALL_INT(VplSettings, points, "gi.vpl.points", "Points of a map", "", 64, 65536, 4096,
-                "Points of surfaces that are splatted into a virtual light's map."),
-    TYNDALL_INT(VplSettings, mapSide, "gi.vpl.mapSide", "Visibility map", "texels", 0, 512, 64,
-                "Side of a virtual light's map of what it sees; 0: nothing hides it."),
+        "Makes visibility maps by rays on the processor, or by points that the GPU splats (for a fast GPU)."),
     TYNDALL_INT(
-        VplSettings, depthSide, "gi.vpl.depthSide", "Map of optical depth", "texels", 0, 64, 16,
-        "Side of a virtual light's map of the grids' optical depth around it; 0: grids are marched for each light and point."),
-    TYNDALL_INT(VplSettings, samples, "gi.vpl.samples", "Points of a ray", "", 1, 1024, 24,
-                "Points along a ray through media at which virtual lights are gathered."),
+        VplSettings, points, "gi.vpl.points", "Points per map", "", 64, 65536, 4096,
+        "Points of surfaces splatted into each visibility map, for maps from points. More leave fewer gaps and cost time."),
+    TYNDALL_INT(
+        VplSettings, mapSide, "gi.vpl.mapSide", "Visibility map size", "texels", 0, 512, 64,
+        "Side of a virtual light's visibility map. Larger maps find thinner occluders and cost time and memory with their area; 0: no shadows."),
+    TYNDALL_INT(
+        VplSettings, depthSide, "gi.vpl.depthSide", "Depth map size", "texels", 0, 64, 16,
+        "Side of a virtual light's map of the optical depth of grids. Larger maps have sharper shadows in smoke and cost time and memory with their area; 0 marches grids for each pair, which is slow."),
+    TYNDALL_INT(
+        VplSettings, samples, "gi.vpl.samples", "Points per ray", "", 1, 1024, 24,
+        "Points along a ray through media that gather virtual lights. More are less noisy; time grows in proportion."),
     TYNDALL_ENUM(
-        VplSettings, compensation, "gi.vpl.compensation", "Compensation", kCompensationNames, 2,
-        "What the bound takes away: missing, made up for as if light were even, or gathered from a point near by."),
+        VplSettings, compensation, "gi.vpl.compensation", "Bias compensation", kCompensationNames,
+        2,
+        "Light removed by clamping: left out (clamped), estimated as if light were even (closed), or gathered at a point nearby (traced, slower)."),
     TYNDALL_INT(
-        VplSettings, nearPaths, "gi.vpl.nearPaths", "Paths for what is missed", "", 0, 1024, 1,
-        "In averaged frames, with traced compensation: paths on the processor for each square of surfaces and each ray, which bring what the bound takes away and the traced step does not make up for; 0: it is missing."),
+        VplSettings, compensationPaths, "gi.vpl.nearPaths", "Compensation paths", "", 0, 1024, 1,
+        "Processor paths for each square of surfaces and each ray that add light which traced compensation lacks; in averaged frames alone. More are less noisy and slower; 0 leaves it out."),
     TYNDALL_ENUM(
         VplSettings, march, "gi.vpl.march", "March resolution", kMarchNames, 1,
-        "Rays along which media show virtual lights: for every pixel, or for squares of 2, 4 or 8 pixels a side."),
+        "One ray through media for each pixel, or for a square of 2, 4 or 8 pixels a side. Fewer are faster and blur outlines."),
     TYNDALL_ENUM(
         VplSettings, surfaces, "gi.vpl.surfaces.resolution", "Surface resolution", kMarchNames, 1,
-        "Surfaces that gather virtual lights: of every pixel, or of one pixel of squares of 2, 4 or 8 pixels a side."),
+        "One gathering on surfaces for each pixel, or for a square of 2, 4 or 8 pixels a side. Fewer are faster and blur outlines."),
     TYNDALL_FLOAT(
-        VplSettings, clamp, "gi.vpl.clamp", "Bound", "", 0.0f, 100.0f, 1.0f,
-        "Distance below which a virtual light counts as this far, over the mean distance between virtual lights."),
+        VplSettings, clamp, "gi.vpl.clamp", "Clamping distance", "", 0.0f, 100.0f, 1.0f,
+        "A virtual light nearer than this, in mean distances between lights, is clamped to it. Higher removes bright spots and adds bias or work for the compensation."),
     TYNDALL_FLOAT(
-        VplSettings, surfaceClamp, "gi.vpl.surfaceClamp", "Bound between surfaces", "", 0.0f,
+        VplSettings, surfaceClamp, "gi.vpl.surfaceClamp", "Clamping between surfaces", "", 0.0f,
         100.0f, 0.5f,
-        "The same for light from surface to surface and, where it is less, from surfaces to media: in one frame nothing makes up for it."),
+        "The clamping distance for light between surfaces and from surfaces to media near them. Higher removes bright spots and darkens corners; single frames do not compensate for it."),
     TYNDALL_FLOAT(
-        VplSettings, relaxed, "gi.vpl.relaxed", "Relaxed bound", "", 1.0f, 1000.0f, 2.0f,
-        "Traced compensation gathers with a bound at so many times less distance; at more in averaged frames, as they come."),
+        VplSettings, relaxed, "gi.vpl.relaxed", "Relaxed clamping", "", 1.0f, 1000.0f, 2.0f,
+        "Traced compensation clamps at this many times less distance, and still less in averaged frames. Higher is less bias and more noise."),
     TYNDALL_FLOAT(
-        VplSettings, roughness, "gi.vpl.roughness", "Least roughness", "", 0.0f, 1.0f, 0.4f,
-        "Smoother surfaces reflect virtual lights as if they were this rough: else each light is a spot. Less in averaged frames, as they come."),
-    TYNDALL_BOOL(VplSettings, fromSurfaces, "gi.vpl.fromSurfaces", "On surfaces", true,
-                 "Virtual lights on surfaces."),
-    TYNDALL_BOOL(VplSettings, fromMedia, "gi.vpl.fromMedia", "In media", true,
-                 "Virtual lights in media."),
+        VplSettings, roughness, "gi.vpl.roughness", "Minimum roughness", "", 0.0f, 1.0f, 0.4f,
+        "Smoother surfaces reflect virtual lights as if they had this roughness; it falls in averaged frames. Lower is sharper and shows single lights as spots."),
+    TYNDALL_BOOL(VplSettings, fromSurfaces, "gi.vpl.fromSurfaces", "Lights on surfaces", true,
+                 "Gathers virtual lights on surfaces. Off shows the others alone."),
+    TYNDALL_BOOL(VplSettings, fromMedia, "gi.vpl.fromMedia", "Lights in media", true,
+                 "Gathers virtual lights in media. Off shows the others alone."),
     TYNDALL_BOOL(
         VplSettings, keep, "gi.vpl.keep", "Keep walks", true,
-        "Walks and maps are kept while nothing has changed; off: made anew each frame, to be timed."),
+        "Keeps walks and maps while nothing changes. Off makes them again in each frame, for timing."),
     TYNDALL_BOOL(
-        VplSettings, incremental, "gi.vpl.incremental", "Keep walks while media change", false,
-        "Walks and maps stay while nothing but media changes a little: only what walks carry is told anew. Noisier where media are uneven."),
+        VplSettings, incremental, "gi.vpl.incremental", "Keep walks in moving media", false,
+        "Keeps walks and maps while only media change a little, and updates the power of the lights. Faster, but noisier in uneven media."),
     TYNDALL_ENUM(
         VplSettings, show, "gi.vpl.show", "Show", kShowNames, 0,
-        "In the picture the virtual lights, green on surfaces and red in media, or the map of what one of them or all of them see; or nothing but the light that the bound takes away."),
+        "Draws virtual lights (green on surfaces, red in media), the visibility map of one light, all maps, or the light removed by clamping alone (lost)."),
     TYNDALL_INT(VplSettings, showLight, "gi.vpl.showLight", "Light shown", "", 0, 1000000, 0,
-                "Number of the virtual light whose map is shown."),
+                "Number of the virtual light whose visibility map is shown."),
 };
 
 constexpr PresetEntry kVplPresets[] = {

@@ -8,16 +8,16 @@
 
 namespace tyndall::volumetric_gi {
 
-/// Who makes maps of what virtual lights see: rays on the processor, or points that the graphics processor splats.
+/// How visibility maps are made: by rays on the processor, or from points that the GPU splats.
 constexpr int32_t kVplMapsOfRays = 0, kVplMapsOfPoints = 1;
 
 struct VplSettings {
     int32_t walks, candidates, renewed;
-    int32_t classes, surfaceClasses;
+    int32_t subsets, surfaceSubsets;
     int32_t maps, points; // maps: kVplMapsOfRays …
     int32_t mapSide, depthSide;
     int32_t samples;
-    int32_t nearPaths;
+    int32_t compensationPaths;
     int32_t compensation;    // kVplClamped and so on
     int32_t march, surfaces; // log2 of pixels along an edge of the squares that gather once
     float clamp, surfaceClamp;

@@ -44,7 +44,7 @@ fg::TextureHandle addVplShow(fg::FrameGraph& graph, const plugin::FrameInputs& i
             [](const Data& data, fg::PassContext& context) {
                 auto command = context.compute("gi/vpl/show.comp");
                 bindView(command, data.view);
-                // What is not there is not looked at, but has to be something.
+                // The shader does not read it, but the binding must be valid.
                 const auto orColor = [&](fg::TextureHandle texture) {
                     return texture ? texture : data.color;
                 };

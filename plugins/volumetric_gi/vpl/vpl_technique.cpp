@@ -27,7 +27,7 @@ double roundsOfLight(const MediaResources& media, bool grids, const TracedScene&
                std::log2(double(scene.tree().size()) + 1);
 }
 
-/// Of a light that is shown, part of the mean distance between lights.
+/// Radius of a light in the debug view, over the mean distance between lights.
 constexpr double kBall = 0.08;
 
 /// As addStatistics() fills them in; milliseconds are of this frame, on the processor.
@@ -57,15 +57,15 @@ private:
 /// Of points that are splatted into maps: lights side by side have different ones, so that their errors differ.
 constexpr uint32_t kPointSets = 8;
 
-/// With which paths gather their own walk, over the content's radius. The light of one walk is all that lamps give: nearer, it outshines the picture (at 0.3
-/// paths in a hall in the sun have 1.4 to 1.7 times the noise); farther, dense media have more (at 1 the cloud and fog of τ 8 have 1.3 to 1.5 times that of 0.3).
-constexpr double kBoundOfPaths = 0.6;
+/// Clamp distance of the walks that paths gather, over the content's radius. One walk carries all power of the lights: clamped nearer, it outshines the picture (at 0.3
+/// paths in a sunlit hall have 1.4 to 1.7 times the noise); clamped farther, dense media are noisier (at 1 the cloud and fog of τ 8 have 1.3 to 1.5 times the noise of 0.3).
+constexpr double kClampOfPaths = 0.6;
 
-/// With which it is found out what lights matter.
+/// Visible points that the importance of lights is measured at.
 constexpr uint32_t kSeenPoints = 256;
 
-/// Between lights, metres: (V/M)^(1/3) (transport.md, 5.1 i) of the M lights in the content and the box around them; of all, where none are there.
-/// `times`: so many times as many lights as are given.
+/// Mean distance between lights, metres: (V/M)^(1/3) of the M lights in the content and their box, of volume V; of all lights if none is there.
+/// `times`: multiplies M.
 double meanDistanceOf(const std::vector<dvec3>& lights, const Bounds& content, double times) {
     Bounds around[2];
     double count[2] = {};
@@ -89,12 +89,12 @@ uint32_t termBits(TermSet given, const Term (&terms)[4]) {
     return bits;
 }
 
-/// As the paper has it (docs/techniques/vpl.md, "As the paper prints it"): every walk's lights are gathered, one bound for all light, and what it takes away is
-/// followed one step in media, without the light that comes straight from a light there.
+/// As in the paper (docs/techniques/vpl-explained.md, "Corrections to the paper"): the lights of every walk, one clamping distance for all light, and compensation by
+/// one step in media that does not gather direct light.
 VplSettings asInThePaper(VplSettings settings) {
     settings.candidates = 1;
     settings.surfaceClamp = settings.clamp;
-    settings.nearPaths = 0;
+    settings.compensationPaths = 0;
     settings.incremental = false;
     return settings;
 }
@@ -107,7 +107,7 @@ bool converges(const plugin::FrameInputs& inputs) {
 
 void VplTechnique::makeLights(const plugin::FrameInputs& inputs) {
     const uint32_t generation = converges(inputs) ? inputs.view.data.frameIndex : 0;
-    // Which lights matter changes with the media: where walks are to be kept, all are.
+    // Importance changes with the media: where walks are kept while media change, all lights are.
     const bool inTurns = used_.renewed > 0 && !used_.incremental && !converges(inputs);
     const uint32_t candidates =
         used_.incremental || inTurns ? 1 : uint32_t(used_.candidates);
@@ -143,7 +143,7 @@ void VplTechnique::makeLights(const plugin::FrameInputs& inputs) {
     }
     set_ = packWalks(
         scene_.usesProxies() ? reweighed(walks_, *scene_.scene().media, scene_.media()) : walks_, what);
-    if (!scene_.usesProxies()) walks_ = {}; // they name media that are not kept
+    if (!scene_.usesProxies()) walks_ = {}; // they point to media that are not kept
     if (anew) makeMaps(generation);
     walksKey_ = walksKey;
     lightsKey_ = wantedKey_ = lightsKey;
@@ -151,7 +151,7 @@ void VplTechnique::makeLights(const plugin::FrameInputs& inputs) {
     stale_ = nextTurn_ = 0;
 }
 
-/// Maps of what all lights see.
+/// Visibility maps of all lights.
 void VplTechnique::makeMaps(uint32_t generation) {
     const Stopwatch watch(times_.maps);
     const tracing::SurfaceScene& surfaces = *scene_.scene().surfaces;
@@ -164,7 +164,7 @@ void VplTechnique::makeMaps(uint32_t generation) {
         maps_ = makeVisibilityMaps(surfaces, set_, uint32_t(used_.mapSide), generation);
 }
 
-/// After a change of lights or media: so many walks a frame, in turn, until all are of the scene as it is. Maps of the other lights stay.
+/// After a change of lights or media: renews this many walks a frame, in turn, until all belong to the present scene. Maps of the other lights stay.
 void VplTechnique::renewSome(const WalkOrder& order, uint64_t lightsKey) {
     if (lightsKey != wantedKey_) {
         wantedKey_ = lightsKey;
@@ -198,7 +198,7 @@ void VplTechnique::renewSome(const WalkOrder& order, uint64_t lightsKey) {
     lightsKey_ = walksKey_ = cacheKey(lightsKey, stale_);
 }
 
-/// Of the lights of all candidates those that matter to the picture.
+/// Chooses among the lights of all candidates by importance.
 void VplTechnique::choose(const plugin::FrameInputs& inputs, const WalkOrder& order,
                           uint32_t candidates) {
     const tracing::SurfaceScene& surfaces = *scene_.scene().surfaces;
@@ -211,29 +211,29 @@ void VplTechnique::choose(const plugin::FrameInputs& inputs, const WalkOrder& or
                  meanDistanceOf(lights, scene_.content(), 1.0 / candidates), seed);
 }
 
-/// By paths on the processor: in averaged frames alone, for they are noise that has to be averaged. Not where walks go through proxy media.
+/// Compensation paths on the processor: in averaged frames alone, because they are noisy. Not if walks go through proxy media.
 bool VplTechnique::followsWhatIsMissed(const plugin::FrameInputs& inputs) const {
-    return used_.nearPaths > 0 && std::max(used_.clamp, used_.surfaceClamp) > 0 &&
+    return used_.compensationPaths > 0 && std::max(used_.clamp, used_.surfaceClamp) > 0 &&
            used_.fromSurfaces && used_.fromMedia &&
            used_.compensation == int32_t(gpu::kVplTraced) &&
            used_.show != int32_t(gpu::kVplShowLost) && converges(inputs) && !scene_.usesProxies();
 }
 
-void VplTechnique::makeNear(const plugin::FrameInputs& inputs) {
+void VplTechnique::makePathLight(const plugin::FrameInputs& inputs) {
     const gpu::VplParams& params = gather_.params;
-    if (!near_.onSurfaces.empty() || !near_.inMedia.empty() || params.nearLight != 0)
-        ++nearVersion_;
-    near_ = {};
-    if (params.nearLight == 0) return;
+    if (!pathLight_.onSurfaces.empty() || !pathLight_.inMedia.empty() || params.pathLight != 0)
+        ++pathLightVersion_;
+    pathLight_ = {};
+    if (params.pathLight == 0) return;
     const auto metres = [](float squared) { return std::sqrt(double(squared)); };
     CompensationOrder order;
     order.surfaceFactor = gather_.surfaceFactor;
     order.mediaFactor = gather_.mediaFactor;
-    order.paths = uint32_t(used_.nearPaths);
+    order.paths = uint32_t(used_.compensationPaths);
     order.first = inputs.view.data.frameIndex * order.paths;
     order.onSurfaces = (inputs.terms & kIndirectOnSurfaces) != 0;
     order.inMedia = (inputs.terms & ~kIndirectOnSurfaces) != 0 &&
-                    (params.nearLight & gpu::kVplNearMedia) != 0 && inputs.media.count > 0 &&
+                    (params.pathLight & gpu::kVplPathsInMedia) != 0 && inputs.media.count > 0 &&
                     inputs.transmittance; // else none is in view
     order.clamps = {metres(params.surfaceClampSquared), metres(params.clampSquared),
                     metres(params.mediumClampSquared), double(params.relaxed)};
@@ -243,32 +243,32 @@ void VplTechnique::makeNear(const plugin::FrameInputs& inputs) {
     path.middle = dvec3(params.content);
     if (params.content.w > 0) {
         path.radius = 1 / std::sqrt(double(params.content.w));
-        path.clampDistance = kBoundOfPaths * path.radius;
+        path.clampDistance = kClampOfPaths * path.radius;
     }
     path.leastRoughness = double(params.leastRoughness);
     const Stopwatch watch(times_.near);
-    near_ = compensationLight(inputs.view.data, scene_.scene(), scene_.emission(), order);
+    pathLight_ = compensationLight(inputs.view.data, scene_.scene(), scene_.emission(), order);
 }
 
-/// How near light is clamped, and what brings what that takes away.
+/// Clamping distances, and what compensates for the clamped light.
 void VplTechnique::setClamps(const plugin::FrameInputs& inputs, gpu::VplParams& params) const {
-    // The bound follows from all lights of an average: what it takes away tends to nothing as frames come.
+    // The clamping distance follows from all lights of an average: the clamped light tends to 0 with more frames.
     const double frames =
         converges(inputs) && !asPrinted() ? double(inputs.view.data.frameIndex) + 1 : 1;
     const double mean = meanDistanceOf(set_.positions, scene_.content(), frames);
     const auto squared = [](double x) { return float(x * x); };
     params.clampSquared = squared(mean * double(used_.clamp));
-    // Lights in a lobe, whose solid angle goes with the fourth power of roughness, become more as frames come, though it narrows; so may what is gathered near
-    // by. Between surfaces the bound may not: the distance d below which one light in d² outshines the average must fall slower than the root of the frames.
+    // The solid angle of a lobe goes with the fourth power of roughness: it may narrow while lights in it become more. The same holds for the relaxed clamping.
+    // Not between surfaces: the distance d below which one light in d² outshines the average must fall more slowly than the root of the number of frames.
     const double finer = std::pow(frames, 1.0 / 6);
     params.mediumClampSquared = squared(mean * double(used_.surfaceClamp));
-    // Where paths bring what it takes away, it costs no light, and stays wide for less noise.
-    params.nearLight = 0;
+    // Where paths compensate for it no light is lost, and the distance stays large for less noise.
+    params.pathLight = 0;
     if (followsWhatIsMissed(inputs)) {
-        params.nearLight = gpu::kVplNearSurfaces;
-        if (inputs.kinds == kAllMedia) params.nearLight |= gpu::kVplNearMedia; // paths see all media
+        params.pathLight = gpu::kVplPathsOnSurfaces;
+        if (inputs.kinds == kAllMedia) params.pathLight |= gpu::kVplPathsInMedia; // paths see all media
     }
-    params.surfaceClampSquared = params.nearLight != 0
+    params.surfaceClampSquared = params.pathLight != 0
                                      ? squared(meanDistanceOf(set_.positions, scene_.content(), 1) *
                                                double(used_.surfaceClamp) / finer)
                                      : params.mediumClampSquared;
@@ -289,13 +289,13 @@ VplGather VplTechnique::gather(const plugin::FrameInputs& inputs) const {
         if (medium.isGrid()) grids.include(medium.bounds());
     const double rounds =
         roundsOfLight(inputs.media, !grids.empty(), scene_) * double(params.lightCount);
-    const auto classes = [&](int32_t wanted, double points) {
+    const auto subsets = [&](int32_t wanted, double points) {
         const double least = rounds * points / kMostRounds;
         return uint32_t(std::clamp(std::max(double(wanted), std::ceil(least)), 1.0,
                                    double(std::max(params.walkCount, 1u))));
     };
-    params.classes = classes(used_.classes, 2 * double(used_.samples)); // with compensation
-    params.surfaceClasses = classes(used_.surfaceClasses, 1);
+    params.subsets = subsets(used_.subsets, 2 * double(used_.samples)); // with compensation
+    params.surfaceSubsets = subsets(used_.surfaceSubsets, 1);
     params.mapSide = maps_.empty() && points_.points.empty() ? 0 : uint32_t(used_.mapSide);
     setClamps(inputs, params);
     params.lost = used_.show == int32_t(gpu::kVplShowLost) ? 1 : 0;
@@ -303,7 +303,7 @@ VplGather VplTechnique::gather(const plugin::FrameInputs& inputs) const {
     params.surfaceTerms =
         termBits(inputs.terms, {Term::LSSE, Term::LVSE, Term::LXSSE, Term::LXVSE});
     params.mediaTerms = termBits(inputs.terms, {Term::LSVE, Term::LVVE, Term::LXSVE, Term::LXVVE});
-    // The closed form takes all light around a point for one, and all media.
+    // The closed form needs all terms around a point, and all media.
     if (params.compensation == gpu::kVplClosedForm &&
         (params.mediaTerms != gpu::kVplAllTerms || inputs.kinds != kAllMedia))
         params.compensation = gpu::kVplTraced;
@@ -324,7 +324,7 @@ const plugin::TechniqueInfo& VplTechnique::info() const {
     static constexpr plugin::TechniqueInfo kInfo{
         .name = "vpl",
         .title = "Virtual point lights",
-        .help = "Light of random walks, gathered from the virtual lights that they leave: all indirect light.",
+        .help = "Gathers virtual lights that random walks leave: all indirect light, noisy in single frames.",
         .claims = kIndirectOnSurfaces | kIndirectInMedia,
         .sets = nullptr,
         .setCount = 0,
@@ -351,12 +351,12 @@ plugin::FrameOutputs VplTechnique::addPasses(fg::FrameGraph& graph,
     }
     makeLights(inputs);
     gather_ = gather(inputs);
-    makeNear(inputs);
+    makePathLight(inputs);
     TracedBuffers traced = scene_.buffers(graph);
     if (settings_.mapSide == 0) traced.params.treeSize = 0;
     buffers_ = addVplUpload(graph, inputs,
-                            {&set_, &maps_, &points_, traced, &near_.onSurfaces, &near_.inMedia,
-                             lightsKey_, walksKey_, nearVersion_},
+                            {&set_, &maps_, &points_, traced, &pathLight_.onSurfaces,
+                             &pathLight_.inMedia, lightsKey_, walksKey_, pathLightVersion_},
                             gather_.params);
     plugin::FrameOutputs outputs;
     if (inputs.terms & kIndirectOnSurfaces)
@@ -381,7 +381,7 @@ fg::BufferHandle VplTechnique::addStatistics(fg::FrameGraph& graph) {
                    times_.choice,
                    times_.maps,
                    times_.near,
-                   float(near_.nonFinite)};
+                   float(pathLight_.nonFinite)};
     struct Data {
         fg::BufferHandle values;
         const float* data;

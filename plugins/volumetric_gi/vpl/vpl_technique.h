@@ -1,6 +1,6 @@
 #pragma once
 // Instant multiple scattering (Engelhardt, Novák and Dachsbacher 2010): virtual point lights of random walks through surfaces and media, gathered on
-// surfaces and along eye rays, with what their bound takes away. docs/techniques/vpl.md tells how.
+// surfaces and along eye rays, with clamping and bias compensation. docs/techniques/vpl-explained.md explains it.
 
 #include <array>
 #include <string>
@@ -19,10 +19,10 @@ public:
     using GiTechnique::GiTechnique;
     const plugin::TechniqueInfo& info() const override;
     plugin::SettingsTable settings() override;
-    /// Light of virtual lights on surfaces and in media, as far as `inputs.terms` asks for it.
+    /// Light of virtual lights on surfaces and in media, for `inputs.terms`.
     plugin::FrameOutputs addPasses(fg::FrameGraph& graph,
                                    const plugin::FrameInputs& inputs) override;
-    /// The virtual lights, where settings ask for it.
+    /// Debug views, where settings select one.
     fg::TextureHandle addDebugView(fg::FrameGraph& graph, const plugin::FrameInputs& inputs,
                                    fg::TextureHandle color) override;
 
@@ -33,7 +33,7 @@ private:
     void renewSome(const WalkOrder& order, uint64_t lightsKey);
     void choose(const plugin::FrameInputs& inputs, const WalkOrder& order, uint32_t candidates);
     [[nodiscard]] bool followsWhatIsMissed(const plugin::FrameInputs& inputs) const;
-    void makeNear(const plugin::FrameInputs& inputs);
+    void makePathLight(const plugin::FrameInputs& inputs);
     void setClamps(const plugin::FrameInputs& inputs, gpu::VplParams& params) const;
     [[nodiscard]] VplGather gather(const plugin::FrameInputs& inputs) const;
 
@@ -42,16 +42,16 @@ private:
     VplSet set_;
     std::vector<uint32_t> maps_; // of rays
     SurfacePoints points_;       // for maps that are splatted
-    Walks walks_;                // through proxy media, where those are used
+    Walks walks_;                // through proxy media, if those are used
     uint64_t lightsKey_ = 0, walksKey_ = 0;
     uint64_t turnsKey_ = 0,
              wantedKey_ =
-                 0; // of what all walks have in common, and of the lights as they are to be
+                 0; // of the inputs of all walks, and of the wanted lights
     uint32_t stale_ = 0,
-             nextTurn_ = 0;    // walks that are of an earlier scene; the next one to be renewed
+             nextTurn_ = 0;    // walks of an earlier scene; the next one to renew
     uint32_t walksTraced_ = 0; // in this frame
-    uint64_t nearVersion_ = 0;
-    CompensationLight near_; // what the bound takes away and no step in media makes up for
+    uint64_t pathLightVersion_ = 0;
+    CompensationLight pathLight_; // light of compensation paths
     struct {
         float walks = 0, choice = 0, maps = 0, near = 0;
     } times_; // of this frame, milliseconds

@@ -1,4 +1,4 @@
-// Deposits in fixed point into the sources of a step.
+// Converts fixed-point deposits to the sources of a step.
 #include "gi/lpv/lattice.glsl"
 
 layout(local_size_x = 64) in;

@@ -1,6 +1,6 @@
-// Sums up what measure.comp found: is the light of a lattice settled? (LEDGER: where did the power go?)
+// Sums up the results of measure.comp: is the light of a lattice settled? (LEDGER: the energy balance, too.)
 //
-// The error of light that grows by steps of ratio ρ is the last step times ρ/(1 - ρ). ρ is found from two looks at it.
+// The error of light that grows by steps of ratio ρ is the last step times ρ/(1 - ρ). ρ is estimated from two looks at the residual.
 #include "gi/lpv/workgroup_sums.glsl"
 #include "shared/lpv.h"
 
@@ -9,7 +9,7 @@ layout(local_size_x = 64) in;
 layout(std140) uniform Measure { LpvMeasureParams measure; };
 layout(std430) buffer LpvControls { LpvControl control[]; };
 
-const float kSlowest = 0.9999; // of ratios from step to step; slower is not told from rounding
+const float kSlowest = 0.9999; // largest ratio from step to step; slower cannot be distinguished from rounding
 
 void concludeLook() {
     uint lattice = measure.lattice;
@@ -28,7 +28,7 @@ void concludeLook() {
     control[lattice].residual = residual;
     control[lattice].error = error;
     control[lattice].stored = stored;
-    // What comes in from a coarser lattice goes on changing until that one is settled.
+    // Light that enters from a coarser lattice changes until that one is settled.
     bool outerSettled = lattice == 0u || control[lattice - 1u].settled != 0u;
     if (outerSettled && error >= 0.0 && error <= measure.tolerance) {
         control[lattice].settled = 1u;

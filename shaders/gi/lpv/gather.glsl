@@ -1,4 +1,4 @@
-// What arrives in a cell of the lattice in a step: from its neighbours, from the surfaces around it, and from sources.
+// Light that arrives in a cell of the lattice in a step: from its neighbours, from the surfaces around it, and from sources.
 #ifndef TYNDALL_GI_LPV_GATHER
 #define TYNDALL_GI_LPV_GATHER
 #include "gi/lpv/lattice.glsl"
@@ -9,10 +9,10 @@ layout(std430) readonly buffer LpvFlux { float flux[]; };
 
 /// Light of three channels.
 struct Arrival {
-    vec4 red; // of what joins the cell's lobe; xyz: first moment (power times mean direction), w: power
+    vec4 red; // light that joins the cell's lobe; xyz: first moment (power times mean direction), w: power
     vec4 green;
     vec4 blue;
-    vec3 straight[kLpvClasses]; // power of what goes straight on, in each class of directions
+    vec3 straight[kLpvClasses]; // power that goes straight on, in each class of directions
 };
 
 vec3 fluxOf(uint cell, uint cells, uint j) {
@@ -25,10 +25,10 @@ void addLight(inout Arrival a, vec3 power, vec3 direction) {
     a.blue += power.b * vec4(direction, 1.0);
 }
 
-/// Of the first surface on a cell's way in direction j.
+/// Of the first surface on a cell's link in direction j.
 vec3 reflectance(uint cell, uint cells, uint j) { return unpackUnorm4x8(links[(kLpvSurface + j) * cells + cell]).rgb; }
 
-/// What is sent out from within a cell (`emission`, and what is scattered of light that has `classes`), and all that collides in it
+/// Power sent out from within a cell (`emission`, and the scattered part of light that has `classes`), and all power that collides in it
 /// (LatticeModel::send).
 float emittedInside(vec3 classes, float depth, float albedo, float emission, out float collided) {
     collided = 0.0;
@@ -46,9 +46,9 @@ float emittedInside(vec3 classes, float depth, float albedo, float emission, out
 /// All that arrives.
 vec3 arrivingPower(Arrival a) { return vec3(a.red.w, a.green.w, a.blue.w) + a.straight[0] + a.straight[1] + a.straight[2]; }
 
-/// Power that comes to a cell along direction j from its neighbour. `blocked`: the cell's shut ways.
+/// Power that comes to a cell along direction j from its neighbour. `blocked`: the cell's blocked links.
 vec3 powerAlong(ivec3 at, uint cells, uint blocked, uint j) {
-    // Direction 25 - j is the opposite one: what stands between two cells blocks both ways.
+    // Direction 25 - j is the opposite one: a surface between two cells blocks both directions.
     ivec3 from = at - params.directions[j].offset.xyz;
     if ((blocked & (1u << (25u - j))) != 0u || !wrapCell(from)) return vec3(0.0);
     return fluxOf(cellIndex(from), cells, j);
@@ -65,7 +65,7 @@ Arrival gatherLight(ivec3 at, uint cells) {
     Arrival a = Arrival(sources[(kLpvEntering + 0u) * cells + self], sources[(kLpvEntering + 1u) * cells + self],
                         sources[(kLpvEntering + 2u) * cells + self], vec3[kLpvClasses](vec3(0.0), vec3(0.0), vec3(0.0)));
     uint blocked = links[kLpvBlocked * cells + self];
-    vec3 back = vec3(0.0);   // what surfaces around the cell send back of what it sent
+    vec3 back = vec3(0.0);   // power that surfaces around the cell reflect back
     vec3 normal = vec3(0.0); // of these, from the directions that they block
     for (uint j = 0u; j < kLpvDirections; ++j) {
         vec4 d = params.directions[j].unit;

@@ -1,4 +1,4 @@
-// Cells of a lattice: places and numbers.
+// Cells of a lattice: positions and numbers.
 #ifndef TYNDALL_GI_LPV_GRID
 #define TYNDALL_GI_LPV_GRID
 #include "common/math.glsl"

@@ -1,4 +1,4 @@
-// Light that comes into a lattice from the coarser one around it, as a source of the cells along its border.
+// Light that enters a lattice from the coarser one around it, as a source of the cells along its border.
 #include "gi/lpv/lattice.glsl"
 #include "gi/lpv/outer.glsl"
 

@@ -1,8 +1,8 @@
-// Light into the lattice, by the texels of a reflective shadow map. A texel is a ray from the light: in every cell that it crosses, what the
-// media scatter of it starts there; where it ends, the surface sends back what it reflects, as Lambert's law has it.
+// Injection by the texels of a reflective shadow map. A texel is a ray from the light. In every cell that it crosses it injects the power that the
+// media scatter; where it ends it injects the power that the surface reflects, by Lambert's law.
 //
 // Powers are closed forms of the ray's optical depth, so that their sum over a ray is exact however coarse the lattice. They are added in
-// fixed point: the same bits in whatever order texels come. What rounding leaves goes to the ray's next cell.
+// fixed point: the same bits in any order of texels. Rounding errors carry over to the ray's next cell.
 #include "common/receiver.glsl"
 #include "gi/lpv/reflection.glsl"
 #include "gi/lpv/lattice.glsl"
@@ -18,14 +18,14 @@ layout(std140) uniform Inject { LpvInjectParams inject; };
 layout(std430) readonly buffer LpvMedium { vec4 medium[]; };
 layout(std430) buffer LpvDeposits { int deposits[]; };
 
-const int kMostCells = 1024; // along a ray; ends one whose coordinates have lost their meaning
+const int kMostCells = 1024; // along a ray; a limit in case its coordinates overflow
 
 /// Area of [0,x] × [0,y] of the plane at distance 1, as a solid angle.
 float cornerAngle(vec2 p) { return atan(p.x * p.y, sqrt(1.0 + dot(p, p))); }
 
 /// Solid angle of a texel of a perspective view.
 float texelAngle(ivec2 texel) {
-    // Half a width of the picture at distance 1, from the way that a corner's ray is bent.
+    // Half the width of the picture at distance 1, from the direction of a corner's ray.
     Ray corner = cameraRay(view.size.xy);
     vec3 v = mat3(view.viewFromRender) * corner.direction;
     vec2 tangent = v.xy / -v.z;
@@ -45,7 +45,7 @@ vec3 texelPower(ivec2 texel, Ray ray) {
     return intensity * angle * (type == kLightSpot ? coneAttenuation(light, ray.direction) : 1.0);
 }
 
-/// Adds `amount` units; what is less than one stays in `rest`.
+/// Adds `amount` units; the fractional part stays in `rest`.
 void deposit(uint plane, uint cell, uint cells, float amount, inout float rest) {
     float units = amount + rest;
     float whole = floor(units + 0.5);
@@ -112,7 +112,7 @@ void scatterAlong(Ray ray, vec3 power, float end, inout Rests rests, inout vec3 
             float middle = 0.5 * (t + next);
             float window = lights[inject.light].type == kLightDirectional ? 1.0 : rangeWindow(lights[inject.light].position.w, middle);
             vec3 scattered = power * window * exp(-depth) * across * oneMinusExpOverX(across) * medium[kLpvTrueAlbedo * cells + index].rgb;
-            // A mean cosine of g: a part |g| goes on (or back), the rest to all sides.
+            // A mean cosine of g: the part |g| goes forwards (or backwards), the rest evenly.
             float g = cellDepth.w;
             uint target = cellIndex(cellOnSide(params.grid, origin + direction * middle));
             for (uint c = 0u; c < 3u; ++c) deposit(12u + c, target, cells, scattered[c] * (1.0 - abs(g)), rests.emission[c]);
@@ -151,7 +151,7 @@ void main() {
     depth = depthBefore(ray, surface);
     Rests none = Rests(vec4[3](vec4(0.0), vec4(0.0), vec4(0.0)), vec3(0.0));
     vec3 arriving = power * window * exp(-depth);
-    // One deposit: a cell holds no more of light that enters it than the first moment of all of it.
+    // One deposit: of entering light a cell holds the power and the first moment alone.
     vec3 mirror = reflect(ray.direction, r.facet);
     vec3 along = meanOfLobe(mirror, r.facet, r.roughness);
     vec3 all = reflected.even + reflected.mirrored;

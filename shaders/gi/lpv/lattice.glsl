@@ -1,4 +1,4 @@
-// The lattice of light: its arrays, its neighbours, and the lobe that a cell's light leaves with.
+// The lattice: its arrays, its neighbours, and the lobe of the light that leaves a cell.
 #ifndef TYNDALL_GI_LPV_LATTICE
 #define TYNDALL_GI_LPV_LATTICE
 #include "gi/lpv/grid.glsl"
@@ -14,7 +14,7 @@ vec3 cellMiddle(ivec3 at) { return params.grid.lowest.xyz + (vec3(at) + 0.5) * p
 
 bool isInside(ivec3 at) { return all(lessThan(uvec3(at), uvec3(params.grid.size.xyz))); }
 
-/// The cell `at`, brought back in along axes that repeat; false where there is none.
+/// The cell `at`, wrapped along axes that repeat; false if there is none.
 bool wrapCell(inout ivec3 at) {
     ivec3 size = params.grid.size.xyz;
     bvec3 repeats = bvec3(params.grid.size.w & 1, params.grid.size.w & 2, params.grid.size.w & 4);
@@ -48,12 +48,12 @@ LobeSums sumLobe(vec4 lobe) {
     return s;
 }
 
-const float kLeastPower = 1e-30;   // less is nothing: what it is divided by and into stays finite
-const float kNarrowestLobe = 0.88; // 26 directions hold no narrower one evenly
+const float kLeastPower = 1e-30;   // less counts as 0, so that quotients stay finite
+const float kNarrowestLobe = 0.88; // 26 directions cannot represent a narrower one evenly
 
 /// The lobe of light of this power and first moment. Linear in the cosine while that is nowhere negative; then the part of a line above
-/// 0 that has the same first moment: exactly on the sphere, and after two steps of Newton's method nearly so among 26 directions. Where a
-/// lobe comes out too narrow, more directions come in, lest it sharpen itself from step to step (LatticeModel::lobe).
+/// 0 that has the same first moment: exactly on the sphere, and after two steps of Newton's method nearly so among 26 directions. If a
+/// lobe comes out too narrow, more directions are added, so that it does not sharpen from step to step (LatticeModel::lobe).
 vec4 makeLobe(float power, vec3 moment, out vec3 classes) {
     classes = vec3(0.0);
     if (!(power > kLeastPower)) return vec4(0.0);
@@ -64,7 +64,7 @@ vec4 makeLobe(float power, vec3 moment, out vec3 classes) {
     vec3 along = r > 0.0 ? mean / r : vec3(0.0);
     vec4 lobe = linear ? vec4(mean * 3.0, 1.0) : vec4(along, 2.0 - 3.0 * narrow);
     LobeSums s = sumLobe(lobe);
-    // A loop rather than a condition: drivers that run both sides of conditions leave a loop that nobody needs.
+    // A loop rather than a condition: drivers that run both sides of conditions can leave a loop early.
     int passes = linear ? 0 : 2;
     for (int pass = 0; pass < passes; ++pass) {
         vec3 missing = narrow * s.power * along - s.moment;

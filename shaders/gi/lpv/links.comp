@@ -1,7 +1,7 @@
-// Which ways between cells a triangle crosses. A workgroup a triangle; its threads share the cells around it.
+// Links between cells that a triangle blocks. One workgroup for each triangle; its threads share the cells around it.
 //
-// A way is the straight line between the middles of two neighbouring cells: walls of any thickness stand between them, or they do not, and a
-// cell belongs to the side on which its middle lies. Ways that graze an edge count as crossed: too few ways would be light through walls.
+// A link is the segment between the centres of two neighbouring cells. A wall of any thickness crosses it or does not, and a
+// cell belongs to the side of its centre. Links that graze an edge count as blocked: a missing blocked link would let light through a wall.
 #include "common/octahedral.glsl"
 #include "gi/lpv/lattice.glsl"
 #include "shared/material.h"
@@ -40,8 +40,8 @@ float crossing(vec3 p, vec3 way, vec3 a, vec3 ab, vec3 ac) {
     return inside ? clamp(t, 0.0, 1.0) : -1.0;
 }
 
-/// Shuts the way in direction j at `t` of it; the first surface's colour stays.
-void shut(uint cell, uint cells, uint j, float t, vec3 colour) {
+/// Blocks the link in direction j at its parameter `t`; the first surface's colour stays.
+void blockLink(uint cell, uint cells, uint j, float t, vec3 colour) {
     atomicOr(links[kLpvBlocked * cells + cell], 1u << j);
     atomicMax(links[(kLpvSurface + j) * cells + cell], packUnorm4x8(vec4(colour, max(1.0 - t, 1.0 / 255.0))));
 }
@@ -70,10 +70,10 @@ void main() {
     for (uint i = gl_LocalInvocationID.x; i < uint(span.x * span.y * span.z); i += 64u) {
         ivec3 at = first + ivec3(i % uint(span.x), i / uint(span.x) % uint(span.y), i / uint(span.x * span.y));
         vec3 middle = vec3(at) + 0.5;
-        if (abs(dot(middle - a, normal)) > 1.7321 + kGraze) continue; // no way from here reaches the plane
+        if (abs(dot(middle - a, normal)) > 1.7321 + kGraze) continue; // no link from here reaches the plane
         bool hasSelf = isInside(at);
         uint self = hasSelf ? cellIndex(at) : 0u;
-        // Half of the directions: the other half are the same ways from the other end.
+        // Half of the directions: the other half are the same links from the other end.
         for (uint j = 13u; j < kLpvDirections; ++j) {
             ivec3 offset = params.directions[j].offset.xyz;
             ivec3 to = at + offset;
@@ -82,12 +82,12 @@ void main() {
             int axis = params.directions[j].offset.w != 0 ? -1 : (offset.x != 0 ? 0 : (offset.y != 0 ? 1 : 2));
             uint units = uint(t * 4095.0 + 0.5);
             if (hasSelf) {
-                shut(self, cells, j, t, colour);
+                blockLink(self, cells, j, t, colour);
                 if (axis >= 0) atomicMax(links[(kLpvNearest + 2u * uint(axis)) * cells + self], (4096u - max(units, 1u)) << 20u | packedNormal);
             }
             if (!isInside(to)) continue;
             uint other = cellIndex(to);
-            shut(other, cells, 25u - j, 1.0 - t, colour);
+            blockLink(other, cells, 25u - j, 1.0 - t, colour);
             if (axis >= 0) atomicMax(links[(kLpvNearest + 2u * uint(axis) + 1u) * cells + other], (4096u - max(4095u - units, 1u)) << 20u | packedNormal);
         }
     }

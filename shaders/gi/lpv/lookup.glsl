@@ -8,7 +8,7 @@ uniform sampler3D redLight;
 uniform sampler3D greenLight;
 uniform sampler3D blueLight;
 
-const float kFade = 2.0; // cells from its border in which a lattice gives way to the next coarser one
+const float kFade = 2.0; // cells from its border in which a lattice blends into the next coarser one
 
 /// xyz: vector flux, w: fluence, W/m², of each channel.
 struct LatticeLight {
@@ -57,7 +57,7 @@ LatticeLight gridLight(LpvGrid grid, vec3 place) {
     return LatticeLight(sum.red / total, sum.green / total, sum.blue / total);
 }
 
-/// How much of the light at `place` a lattice gives: 1 inside, down to 0 at borders beyond which there is a coarser one.
+/// Weight of a lattice at `place`: 1 inside, down to 0 at borders beyond which there is a coarser one.
 float gridShare(LpvGrid grid, vec3 place) {
     vec3 inside = min(place, vec3(grid.size.xyz) - place);
     bvec3 goesOn = bvec3(grid.place.z & 1, grid.place.z & 2, grid.place.z & 4);

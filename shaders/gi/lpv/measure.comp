@@ -1,4 +1,4 @@
-// What the last step of a lattice changed, and (LEDGER) where the power went: sums over workgroups.
+// The change of the last step of a lattice, and (LEDGER) the energy balance: sums over workgroups.
 #include "gi/lpv/gather.glsl" // LpvFlux: before the step
 #include "gi/lpv/workgroup_sums.glsl"
 
@@ -7,7 +7,7 @@ layout(local_size_x = kLpvBlockX, local_size_y = kLpvBlockY, local_size_z = kLpv
 layout(std430) readonly buffer LpvMedium { vec4 medium[]; };
 layout(std430) readonly buffer LpvSent { float sent[]; }; // after the step
 #if LEDGER
-/// Powers of the step in a cell: what is put in, absorbed by media, leaves the lattice, is absorbed by surfaces.
+/// Powers of the step in a cell: injected, absorbed by media, escaped from the lattice, absorbed by surfaces.
 vec4 ledger(ivec3 at, uint cells) {
     uint self = cellIndex(at);
     Arrival a = gatherLight(at, cells);

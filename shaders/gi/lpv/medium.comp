@@ -1,7 +1,7 @@
-// What the media are in each cell of the lattice: means over 27 points of it.
+// The media of each cell of the lattice: means over 27 points.
 //
-// Light is propagated in two bands, for which a medium that scatters by a mean cosine of g is one that scatters (1 - g) as much, evenly
-// to all sides (the transport approximation; exact in two bands): that is what propagation takes.
+// Light is propagated in two bands, for which scattering by a mean cosine of g is isotropic scattering (1 - g) as strong
+// (the transport approximation; exact in two bands). Propagation uses that.
 #include "gi/lpv/lattice.glsl"
 #if MEDIA
 #include "common/phase_function.glsl"
@@ -36,7 +36,7 @@ void main() {
     float cosine = meanOf(forward) / max(meanOf(scattering), 1e-30);
     medium[kLpvTrueDepth * cells + self] = vec4(extinction * params.grid.lowest.w, cosine);
     medium[kLpvTrueAlbedo * cells + self] = vec4(clamp(scattering / max(extinction, vec3(1e-30)), 0.0, 1.0), 0.0);
-    if (params.onward == 0.0) { // what is scattered is lost, forwards, too
+    if (params.onward == 0.0) { // scattered light is lost, also forwards
         scattering = vec3(0.0);
         forward = vec3(0.0);
     }

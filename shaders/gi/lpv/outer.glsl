@@ -1,4 +1,4 @@
-// The next coarser lattice, as a finer one inside it sees it.
+// The next coarser lattice, for passes of a finer one inside it.
 #ifndef TYNDALL_GI_LPV_OUTER
 #define TYNDALL_GI_LPV_OUTER
 #include "gi/lpv/sides.glsl" // of the coarser lattice
@@ -13,7 +13,7 @@ int outerCell(vec3 position) {
     return int(cellIndex(outer, cellOnSide(outer, place)));
 }
 
-/// What the coarser lattice sends there in direction j through a square of the finer one's cells, `edge` metres long.
+/// Power that the coarser lattice sends there in direction j through a square of the finer one's cells, `edge` metres long.
 vec3 outerFluxThrough(int cell, float edge, uint j) {
     if (cell < 0) return vec3(0.0);
     uint cells = cellCount(outer);

@@ -1,5 +1,5 @@
 // The propagation scheme as Billeter, Sintorn and Assarsson 2012 print it (equation 3): radiance in two bands of harmonics (1, y, z, x) of three
-// channels in each cell, extinction linear in the optical depth. It is here to be compared with: docs/techniques/lpv.md says what it loses.
+// channels in each cell, extinction linear in the optical depth. For comparison: docs/measured/lpv-laws.md has what it loses.
 #ifndef TYNDALL_GI_LPV_PRINTED
 #define TYNDALL_GI_LPV_PRINTED
 #include "gi/lpv/lattice.glsl"

@@ -1,5 +1,5 @@
-// Where the power of a step of the printed scheme goes: sums over workgroups, in the order of measure.comp. What is neither absorbed nor blocked nor
-// escaped nor there after the step is what the scheme loses (or makes).
+// Energy balance of a step of the printed scheme: sums over workgroups, in the order of measure.comp. Power that is neither absorbed nor blocked nor
+// escaped nor stored after the step is what the scheme loses (or adds).
 #include "gi/lpv/printed.glsl" // LpvRadiance: before the step
 #define LEDGER 1
 #include "gi/lpv/workgroup_sums.glsl"
@@ -28,10 +28,10 @@ void main() {
         uint blocked = links[kLpvBlocked * cells + self];
         for (uint j = 0u; j < kLpvDirections; ++j) {
             ivec3 to = at + params.directions[j].offset.xyz;
-            bool shut = (blocked & (1u << j)) != 0u;
-            if (!shut && wrapCell(to)) continue;
+            bool atSurface = (blocked & (1u << j)) != 0u;
+            if (!atSurface && wrapCell(to)) continue;
             float power = dot(printedFlux(self, cells, j), vec3(kLpvOne * transfer.harmonics[j].x));
-            values[shut ? 6 : 5] += power;
+            values[atSurface ? 6 : 5] += power;
         }
     }
     leaveSums(values);

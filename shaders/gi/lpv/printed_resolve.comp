@@ -1,4 +1,4 @@
-// The printed scheme's light as look-ups take it. Section 4 ray-marches the power of a cell as light that crosses it: over the mean distance of two
+// The printed scheme's light for look-ups. Section 4 ray-marches the power of a cell as light that crosses it: over the mean distance of two
 // neighbours.
 #include "gi/lpv/printed.glsl" // LpvRadiance: the sum over all steps
 
@@ -21,7 +21,7 @@ void main() {
     uint self = cellIndex(at);
     uint lookups = uint(params.grid.place.y) + self;
     for (uint p = 0u; p < kLpvSidePlanes; ++p) sides[lookups + p * cells] = links[p * cells + self];
-    sides[lookups + kLpvCellMedium * cells] = 0u; // the paper takes a cell's light for that on a surface
+    sides[lookups + kLpvCellMedium * cells] = 0u; // the paper uses a cell's light on a surface as it is
     float unit = transfer.meanLength / (params.grid.lowest.w * params.grid.lowest.w);
     ivec3 to = at + ivec3(0, 0, params.grid.place.x);
     imageStore(redLight, to, lightOf(radianceOf(self, cells, 0u), unit));

@@ -1,4 +1,4 @@
-// The printed scheme's light before the first step: what surfaces reflect and media scatter once. Only the former counts as light to be seen: the
+// The printed scheme's light before the first step: light that surfaces reflect and media scatter once. Only the former counts in look-ups: the
 // latter is single scattering, which is rendered already (section 4).
 #include "gi/lpv/lattice.glsl"
 

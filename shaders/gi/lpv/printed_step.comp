@@ -1,4 +1,4 @@
-// One step of the printed scheme, and the sum over all steps. Blockers are the shut ways of the lattice: they absorb.
+// One step of the printed scheme, and the sum over all steps. Blockers are the blocked links of the lattice: they absorb.
 #include "gi/lpv/printed.glsl"
 
 layout(local_size_x = kLpvBlockX, local_size_y = kLpvBlockY, local_size_z = kLpvBlockZ) in;

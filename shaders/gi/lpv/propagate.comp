@@ -1,10 +1,10 @@
-// One step of the lattice: each cell gathers what its neighbours sent its way, adds what enters it, and sends it on.
+// One step of the lattice: each cell gathers the light that its neighbours sent to it, adds its sources, and sends light on.
 //
-// Light enters a cell, joins its lobe or goes straight on, crosses it (e^(-σ l), l the way to the next cell in its direction) or collides; what is scattered, and what a
-// source emits inside, leaves evenly to all sides with the part that does not collide again on its way out ((1 - e^(-σ l))/(σ l)), and
-// the rest is scattered again: that series is summed in closed form. Power is kept to rounding at every optical depth.
+// Light enters a cell, joins its lobe or goes straight on, and crosses the cell (e^(-σ l), l: length of the link to the next cell) or collides. Scattered light, and light that a
+// source emits inside, leaves isotropically with the part that does not collide again ((1 - e^(-σ l))/(σ l));
+// the rest scatters again, and that series is summed in closed form. Power is conserved to rounding at every optical depth.
 //
-// A block of cells that was dark, amid blocks that were, stays so and costs a few loads (LpvLit).
+// A dark block of cells among dark blocks stays dark and costs a few loads (LpvLit).
 //
 // A cell reads 78 powers (a second time, from the cache, where it sends on what goes straight) and 10 vectors of its own, and writes 78
 // powers: 780 bytes. It gathers in 26 · 3 · 5 operations, sums 3 lobes in 26 · 16 (three times as many where light is directed) and sends in
@@ -19,8 +19,8 @@ layout(std430) buffer LpvLit { uint lit[]; };
 
 uint blockIndex(ivec3 block, ivec3 blocks) { return uint(block.x + blocks.x * (block.y + blocks.y * block.z)); }
 
-/// Whether light may arrive in a block, or be there. Flags are only ever set: whether a neighbour's is seen in the step in which it is set makes
-/// no difference, since what it sent before was nothing.
+/// Whether light may be in a block or arrive there. Flags are only ever set. It makes no difference whether a neighbour's flag is read in the step in
+/// which it is set, since the neighbour sent nothing before.
 bool mayBeLit(ivec3 block, ivec3 blocks) {
     if (params.grid.place.w != 0 || params.grid.size.w != 0 || lit[blockIndex(block, blocks)] != 0u) return true;
     for (int i = 0; i < 27; ++i) {
@@ -48,7 +48,7 @@ void main() {
 
     vec3 depth = medium[kLpvDepth * cells + self].rgb;
     vec3 albedo = medium[kLpvAlbedo * cells + self].rgb;
-    vec3 passed[3], leaving[3]; // of what crosses the cell, and of what is emitted inside
+    vec3 passed[3], leaving[3]; // of light that crosses the cell, and of light emitted inside
     vec3 collided = vec3(0.0);
     vec3 escape = vec3(0.0);
     for (uint c = 0u; c < kLpvClasses; ++c) {

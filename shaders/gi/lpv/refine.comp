@@ -1,5 +1,5 @@
-// The first guess of a lattice's light: that of the coarser lattice around it. The steps that follow need not carry light from one end of the scene
-// to the other.
+// The initial light of a lattice: that of the coarser lattice around it. The steps that follow need not carry light across
+// the scene.
 #include "gi/lpv/lattice.glsl"
 #include "gi/lpv/outer.glsl"
 

@@ -1,9 +1,9 @@
-// What a surface reflects, in two bands of harmonics: all that they hold of a lobe is its power and its mean direction.
+// Reflection in two bands of harmonics: of a lobe they hold the power and the mean direction.
 #ifndef TYNDALL_GI_LPV_REFLECTION
 #define TYNDALL_GI_LPV_REFLECTION
 #include "lighting/brdf.glsl"
 
-/// Reflectances of what is scattered evenly and of what coats and metals reflect about the mirror's direction.
+/// Reflectances of the diffuse part, and of coats and metals around the mirror direction.
 struct Reflection {
     vec3 even;
     vec3 mirrored;
@@ -15,7 +15,7 @@ Reflection reflectionOf(Brdf brdf, float roughness) {
     float r = clamp(roughness, 0.0, 1.0);
     float coat = brdf.specular * (0.0189 + 0.0669 * (1.0 + r * r * (1.896 * r - 2.896)));
     vec3 metal = brdf.baseColor * (1.0 - 0.591 * pow(r, 2.2));
-    const float kFresnel = 0.06; // mean of the coat's over the half-way vectors of rough surfaces: what the base does not get
+    const float kFresnel = 0.06; // mean of the coat's over the half-way vectors of rough surfaces: the part that the base does not receive
     return Reflection(brdf.baseColor * ((1.0 - kFresnel * brdf.specular) * (1.0 - brdf.metallic)), mix(vec3(coat), metal, brdf.metallic));
 }
 

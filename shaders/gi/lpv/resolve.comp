@@ -1,5 +1,5 @@
-// The light that there is in each cell, from what is sent: fluence and vector flux, W/m², by the length of its ways through the cell. With it
-// goes what tells on which side of surfaces a point lies, and how dense the cell is: look-ups need no more.
+// Fluence and vector flux of each cell, W/m², from the sent power and the path lengths of light through the cell. Beside them it
+// stores the planes that decide on which side of surfaces a point lies, and the cell's density: all that look-ups need.
 #include "gi/lpv/gather.glsl"
 
 layout(local_size_x = kLpvBlockX, local_size_y = kLpvBlockY, local_size_z = kLpvBlockZ) in;
@@ -11,10 +11,10 @@ layout(rgba32f) writeonly uniform image3D redLight;
 layout(rgba32f) writeonly uniform image3D greenLight;
 layout(rgba32f) writeonly uniform image3D blueLight;
 
-/// (1 - (1 - e^-x)/x)/x: mean length of ways that begin anywhere on a way of optical depth x and end where it ends.
+/// (1 - (1 - e^-x)/x)/x: mean length of paths that begin anywhere on a link of optical depth x and end where it ends.
 float meanOfInnerWays(float x) { return x < 0.02 ? 0.5 - x * (1.0 / 6.0 - x * (1.0 / 24.0)) : (1.0 - oneMinusExpOverX(x)) / x; }
 
-/// Of power that sets out to cross the cell and of what is emitted inside, in direction j: times the mean length of its way, in cells.
+/// Of power that crosses the cell and of power emitted inside, in direction j: times the mean path length, in cells.
 vec3 onTheWay(vec3 crossing, vec3 emitted, vec3 depth, uint j) {
     vec3 way = depth * sqrt(float(params.directions[j].offset.w + 1));
     vec3 inner = vec3(meanOfInnerWays(way.r), meanOfInnerWays(way.g), meanOfInnerWays(way.b));

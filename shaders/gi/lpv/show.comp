@@ -1,5 +1,5 @@
-// A slice of the finest lattice, drawn into the picture: its light, where light goes, its medium, its surfaces, what the last step changed, where
-// power is lost.
+// A slice of the finest lattice, drawn into the picture: fluence, directions of light, medium, surfaces, change of the last step, absorbed
+// power.
 #include "common/view.glsl"
 #include "gi/lpv/gather.glsl" // LpvFlux: before the last step
 
@@ -99,7 +99,7 @@ void main() {
     vec3 rim = min(within, 1.0 - within);
     rim[axis] = 1.0;
     vec3 value = valueOf(cell, within, axis) + (minimumOf(rim) < 0.03 ? vec3(0.05 * show.white) : vec3(0.0));
-    // Faintly where a surface stands before it.
+    // Faintly where a surface is before it.
     float opacity = t < rayDistanceFromDepth(centre, texelFetch(depth, pixel, 0).r) ? 0.9 : 0.3;
     imageStore(shown, pixel, vec4(mix(picture.rgb, value, opacity), picture.a));
 }

@@ -6,7 +6,7 @@
 
 layout(std430) readonly buffer LpvLinks { uint links[]; };
 
-const float kOffSurface = 0.5; // cells that a point on a surface is moved off it: into the cell that its light goes to and comes from
+const float kOffSurface = 0.5; // cells by which a point on a surface is moved off it, into the cell that its light comes from and goes to
 
 /// The farthest that `place` (cells from the lattice's corner) is behind a surface that crosses an axis through the middle of `cell` before
 /// the next one's; at most 0 where it is behind none. `through`: the surface's normal, away from the middle.
@@ -46,7 +46,7 @@ ivec3 cellOnSide(LpvGrid grid, vec3 place) {
     size *= vec3(1 - first);
     ivec3 second = size.x >= size.y && size.x >= size.z ? ivec3(1, 0, 0) : (size.y >= size.z ? ivec3(0, 1, 0) : ivec3(0, 0, 1));
     ivec3 sides = ivec3(sign(through));
-    int tries = maximumOf(size) > 0.2 ? 3 : 1; // a surface that faces one axis has nothing to do with another
+    int tries = maximumOf(size) > 0.2 ? 3 : 1; // a surface that faces one axis does not matter along another
     for (int i = 0; i < tries; ++i) {
         ivec3 next = clamp(cell + (i == 0 ? first : (i == 1 ? second : first + second)) * sides, ivec3(0), last);
         if (depthBehind(grid, next, place, ignored) <= 0.0) return next;
@@ -54,7 +54,7 @@ ivec3 cellOnSide(LpvGrid grid, vec3 place) {
     return cell;
 }
 
-/// Whether light gets from the middle of `cell` straight to that of `other`; false for cells that are not neighbours.
+/// Whether the link from the centre of `cell` to that of `other` is open; false for cells that are not neighbours.
 bool areOpen(uint blocked, ivec3 cell, ivec3 other) {
     ivec3 offset = other - cell;
     if (any(greaterThan(abs(offset), ivec3(1)))) return false;

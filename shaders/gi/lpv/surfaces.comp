@@ -1,5 +1,5 @@
-// Indirect light of surfaces from the lattice, before the media between them and the eye. Of what a coat or a metal reflects two bands hold
-// no more than from which side it comes.
+// Indirect light of surfaces from the lattice, before the media between them and the eye. Two bands give the reflection of a coat or a metal
+// a mean direction, not an image.
 #include "common/receiver.glsl"
 #include "gi/lpv/reflection.glsl"
 #include "gi/lpv/lookup.glsl"
@@ -8,9 +8,9 @@ layout(local_size_x = 8, local_size_y = 8) in;
 
 layout(rgba32f) writeonly uniform image2D surfaceRadiance;
 
-/// Diffuse light that arrives on a surface, of what goes to it (`towards`) and comes from it (`away`) at `depth` of a medium before it: two
+/// Diffuse light that arrives on a surface, from the flux towards it (`towards`) and away from it (`away`) at optical depth `depth` before it: two
 /// streams, S' = -3/2 D and D' = -2 (1 - albedo) S for their sum S and the difference D = away - towards (diffusion, with Marshak's
-/// conditions). Never negative; equal to `towards` where there is no medium, and never more than there is.
+/// conditions). Never negative; equal to `towards` without a medium, and never more than there is.
 vec3 arrivingThrough(vec3 towards, vec3 away, float depth, float albedo) {
     float loss = 2.0 * (1.0 - albedo);
     float x = min(sqrt(1.5 * loss) * depth, 40.0);
@@ -27,11 +27,11 @@ void main() {
     vec3 radiance = vec3(0.0);
     Receiver r;
     if (receiverAt(texel, r)) {
-        // Off the surface: cells behind it have no part in its light. A little towards the eye: a point on an edge is on no side of the
+        // Off the surface, so that cells behind it give it no light. A little towards the eye: a point on an edge is on neither side of the
         // other surface there, but the eye is.
         vec3 offSurface = kOffSurface * r.facet + 0.01 * r.toEye;
         LatticeLight light = latticeLight(r.position, offSurface);
-        // Of radiance (Φ + 3 F·ω)/4π, what goes through a plane one way and the other: Φ/4 ∓ F·n/2.
+        // Radiance (Φ + 3 F·ω)/4π has the fluxes Φ/4 ∓ F·n/2 through a plane, one for each side.
         vec3 each = 0.25 * fluence(light);
         vec3 net = 0.5 * fluxAlong(light, r.normal);
         vec2 medium = latticeMedium(r.position, offSurface);

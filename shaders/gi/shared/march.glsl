@@ -8,11 +8,11 @@ layout(local_size_x = 8, local_size_y = 8) in;
 layout(std140) uniform Params { MarchParams params; };
 uniform sampler2D depth;
 #ifdef MARCH_FILLS
-uniform sampler2D before; // with kMarchFill: what is there already; w: 0 where nothing is
+uniform sampler2D before; // with kMarchFill: the upsampled image; w: 0 where a pixel is open
 #endif
 layout(rgba32f) writeonly uniform image2D inScatter;
 
-/// Nits that reach the ray's origin from up to `distance` metres. `pixel`: whose ray it is; `number`: of the ray among those that are marched.
+/// Nits that reach the ray's origin from up to `distance` metres. `pixel`: of the ray; `number`: of the ray among all marched rays.
 vec3 mediaLight(Ray ray, float distance, ivec2 pixel, uvec2 number);
 
 void main() {

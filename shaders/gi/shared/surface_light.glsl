@@ -1,11 +1,11 @@
-// Light that surfaces reflect to the eye, in parts that neighbours share.
+// Light that surfaces reflect to the eye, in parts that neighbouring pixels share.
 #ifndef TYNDALL_GI_SHARED_SURFACE_LIGHT
 #define TYNDALL_GI_SHARED_SURFACE_LIGHT
 #include "common/math.glsl"
 #include "common/receiver.glsl"
 
-/// Light that leaves a surface towards the eye, nits, over the colours that neighbours do not share: of the base, and of microfacets that reflect all or,
-/// after Schlick, what grazes them.
+/// Light that leaves a surface towards the eye, nits, over the colours that neighbours do not share: of the base, of microfacets at normal incidence,
+/// and of Schlick's part at grazing angles.
 struct SurfaceLight {
     vec3 diffuse;
     vec3 specular;
@@ -13,16 +13,16 @@ struct SurfaceLight {
 };
 const SurfaceLight kDark = SurfaceLight(vec3(0.0), vec3(0.0), vec3(0.0));
 
-/// With the surface's colours: as evaluateBrdf() has it.
+/// With the surface's colours, as in evaluateBrdf().
 vec3 coloured(Receiver r, SurfaceLight light) {
     float metallic = r.brdf.metallic;
     vec3 straight = mix(vec3(kDielectricF0 * r.brdf.specular), r.brdf.baseColor, metallic);
     return (1.0 - metallic) * r.brdf.baseColor * light.diffuse + straight * light.specular + mix(r.brdf.specular, 1.0, metallic) * light.grazing;
 }
 
-const float kLeastReflectance = 1e-3; // black surfaces mirror no less
+const float kLeastReflectance = 1e-3; // of black surfaces
 
-/// Of light from all around, about: what neighbours do not share. As the processor has it (volumetric_gi/vpl/compensation_light.cpp).
+/// Approximate reflectance for even light: the part that neighbours do not share. The same as (volumetric_gi/vpl/compensation_light.cpp).
 vec3 reflectance(Receiver r) {
     float metallic = r.brdf.metallic;
     vec3 base = r.brdf.baseColor;

@@ -1,5 +1,5 @@
-// From the rays of gi/shared/march.glsl to every pixel. A pixel that no ray fits is marched here by mediaLight(), which whoever includes this defines; with
-// MARCH_FILLS it is left open (w: 0) to a third pass, for shaders that gather much are large.
+// From the rays of gi/shared/march.glsl to every pixel. A pixel that no ray fits is marched here by mediaLight(), which the including shader defines; with
+// MARCH_FILLS it is left open (w: 0) for a third pass, because gathering shaders are large.
 #include "media/spread_rays.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;

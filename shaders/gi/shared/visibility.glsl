@@ -1,4 +1,4 @@
-// What stands between two points: all triangles are asked, in a tree of boxes that is walked without a stack.
+// Visibility between two points: all triangles are tested, in a tree of boxes that is walked without a stack.
 #ifndef TYNDALL_GI_SHARED_VISIBILITY
 #define TYNDALL_GI_SHARED_VISIBILITY
 #include "common/math.glsl"
@@ -9,12 +9,12 @@ layout(std430) readonly buffer TracedTriangles { TracedTriangle tracedTriangles[
 layout(std430) readonly buffer TracedTree { TracedTreeNode tracedTree[]; };
 
 const float kTracedRounding = 1e-4; // of distances and coordinates: nearer to a plane than this a point counts as on it
-const float kTracedSeam = 1e-4;     // barycentric: neighbours overlap, so that nothing comes through between them
+const float kTracedSeam = 1e-4;     // barycentric: neighbours overlap, so that no light passes between them
 
 const uint kHides = 1u;
 const uint kDoubtful = 2u; // the points are on different sides of the triangle's plane, but it does not lie between them; or rays pass parts of it
 
-/// Of a triangle with holes: is there something where these barycentric coordinates are? Pieces as tracing::pieceNumber() has them.
+/// Does a triangle with holes cover these barycentric coordinates? Pieces as tracing::pieceNumber() has them.
 bool covers(TracedTriangle triangle, float second, float third) {
     vec2 at = clamp(vec2(second, third), 0.0, 1.0) * 8.0;
     ivec2 cell = min(ivec2(at), 7);
@@ -25,14 +25,14 @@ bool covers(TracedTriangle triangle, float second, float third) {
     return (((piece < 32 ? triangle.coversLow : triangle.coversHigh) >> uint(piece & 31)) & 1u) != 0u;
 }
 
-/// What one triangle says of the way between two points: kHides, kDoubtful, or 0: it does not hide one from the other.
+/// One triangle against the segment between two points: kHides, kDoubtful, or 0: it does not block.
 uint triangleSays(uint id, vec3 from, vec3 to, float rounding) {
     if (id == kNoTriangle) return 0u;
     TracedTriangle triangle = tracedTriangles[id];
     float ofFrom = dot(triangle.plane.xyz, from) + triangle.plane.w;
     float ofTo = dot(triangle.plane.xyz, to) + triangle.plane.w;
     bool whole = triangle.corner.w != 0.0;
-    uint misses = whole ? 0u : kDoubtful; // behind what has holes there is more
+    uint misses = whole ? 0u : kDoubtful; // other triangles may block behind the holes
     if (min(abs(ofFrom), abs(ofTo)) <= rounding || ofFrom * ofTo >= 0.0) return misses;
     vec3 off = mix(from, to, ofFrom / (ofFrom - ofTo)) - triangle.corner.xyz;
     float second = dot(triangle.second, off);
@@ -41,7 +41,7 @@ uint triangleSays(uint id, vec3 from, vec3 to, float rounding) {
     return crossed && (whole || covers(triangle, second, third)) ? kHides : kDoubtful;
 }
 
-/// To the next node of the tree, unless a leaf whose box the way crosses was found already: its triangle.
+/// Steps to the next node of the tree, unless a leaf whose box the segment crosses is found already: its triangle.
 void nextNode(inout uint node, inout uint triangle, vec3 from, vec3 inverse) {
     if (triangle != kNoTriangle || node >= traced.treeSize) return;
     TracedTreeNode here = tracedTree[node];

@@ -1,4 +1,4 @@
-// What a virtual light's map of optical depth covers: the same for who makes it and who reads it.
+// The layout of a virtual light's map of optical depth, for the passes that make it and that read it.
 #ifndef TYNDALL_GI_VPL_DEPTH_MAP
 #define TYNDALL_GI_VPL_DEPTH_MAP
 #include "common/octahedral.glsl"
@@ -12,7 +12,7 @@ vec2 vplDepthRange(vec3 position, VplParams params) {
     return vec2(length(max(max(low, high), vec3(0.0))), length(max(abs(low), abs(high))));
 }
 
-/// Where step number `step` begins, of the range: what lies first along a way matters most, for behind it less comes through.
+/// Where step number `step` begins, over the range. Steps near the light are short: they attenuate everything behind them.
 float vplDepthStart(uint step) {
     float part = float(step) / float(kVplDepthSteps);
     return part * part;
@@ -48,7 +48,7 @@ vec2 vplDepthPlace(vec3 position, vec3 direction, VplParams params) {
     float slope;
     if (!vplDepthCone(position, params, frame, slope)) return octahedralEncode(direction) * 0.5 + 0.5;
     vec3 local = direction * frame;
-    if (local.z <= 0.0) return vec2(1.0); // the square's corners are out of the cone: no grid is there
+    if (local.z <= 0.0) return vec2(1.0); // the square's corners lie outside the cone, where there is no grid
     return clamp(local.xy / (local.z * slope) * 0.5 + 0.5, 0.0, 1.0);
 }
 

@@ -1,7 +1,7 @@
 // Light of virtual point lights on a surface.
-// MEDIA: 0: there are none; 1: they attenuate it. COMPENSATION: 2: what the bound takes away from the light of media near by is traced.
+// MEDIA: 0: there are none; 1: they attenuate it. COMPENSATION: 2: clamped light of media near by is compensated for by a traced step.
 #if MEDIA
-#include "gi/vpl/near_medium.glsl"
+#include "gi/vpl/compensation.glsl"
 #else
 #include "common/random.glsl"
 #include "gi/vpl/visibility.glsl"
@@ -47,7 +47,7 @@ SurfaceLight gatherSurface(Receiver r, uint number, uint stride, uvec2 pixel) {
     sum.specular *= float(stride);
     sum.grazing *= float(stride);
 #if MEDIA && COMPENSATION == 2
-    // Evenly in what a facet receives; the bound reaches as far as its cosine lets it.
+    // In proportion to irradiance; the clamping distance shrinks with the root of the cosine.
     vec4 u = pixelRandom(pixel, 13u);
     float z = sqrt(1.0 - u.x);
     float angle = 2.0 * kPi * u.y;
@@ -61,8 +61,8 @@ SurfaceLight gatherSurface(Receiver r, uint number, uint stride, uvec2 pixel) {
         Segment there;
         vec3 near = vec3(0.0);
         if (drawNearPoint(r.position, direction, reach, noise.w, t, there)) {
-            uint number = uint(u.z * float(vpl.classes));
-            near = walksInMedium(number, r.position + direction * t, direction, there, relaxedBound(widest), vplTermsOneStepOn(vpl.surfaceTerms)); // of a grazing direction's reach it would be no bound at all
+            uint number = uint(u.z * float(vpl.subsets));
+            near = walksInMedium(number, r.position + direction * t, direction, there, relaxedClampSquared(widest), vplTermsOneStepOn(vpl.surfaceTerms)); // not `reach`, which is 0 for grazing directions
             if ((vpl.surfaceTerms & (1u << kVplOfMedia)) != 0u) near += segmentInScatter(Ray(r.position, direction), there, vpl.lightsOfScene, noise.xyz, number);
             near *= nearPointWeight(r.position, direction, reach, t);
         }

@@ -1,29 +1,29 @@
-// Virtual point lights: what one of them sends in a direction.
+// Virtual point lights: the intensity of one in a direction.
 #ifndef TYNDALL_GI_VPL_LIGHTS
 #define TYNDALL_GI_VPL_LIGHTS
 #include "common/octahedral.glsl"
 #include "common/phase_function.glsl"
 #include "common/view.glsl"
 #include "lighting/brdf.glsl"
-#include "gi/vpl/bound.glsl"
+#include "gi/vpl/clamping.glsl"
 #include "gi/vpl/params.glsl"
 
 layout(std430) readonly buffer VplLights { VplData vplLights[]; };
-layout(std430) readonly buffer VplWalks { uint vplWalks[]; };   // where each walk's lights begin; one more: where the last ends
+layout(std430) readonly buffer VplWalks { uint vplWalks[]; };   // first light of each walk, and the end of the last
 layout(std430) readonly buffer VplDepths { uvec2 vplDepths[]; }; // the grids' optical depth, rgb in half precision, by light, direction, distance
 
-/// 1/b at a receiver over that in the content: around it lights lie apart in proportion to how far out they are.
+/// 1/b at a receiver over that in the content: outside it, the distance between lights grows in proportion to the distance from it.
 float vplClampScale(vec3 position) {
     vec3 off = position - vpl.content.xyz;
     return max(1.0, dot(off, off) * vpl.content.w);
 }
 
-const float kMostLost = 1e4; // over the bound: what is lost at a light itself has no end
+const float kMostLost = 1e4; // over the clamped value: the loss at a light itself is infinite
 
-/// heldInverseSquare(), or what it takes away, where that is to be looked at.
+/// clampedInverseSquare(), or what clamping removes, for the view that shows it.
 float vplInverseSquare(float squared, float cosines, float clampSquared) {
-    float held = heldInverseSquare(squared, cosines, clampSquared);
-    return vpl.lost == 0u ? held : min(1.0 / max(squared, 1e-30), kMostLost * held) - held;
+    float clamped = clampedInverseSquare(squared, cosines, clampSquared);
+    return vpl.lost == 0u ? clamped : min(1.0 / max(squared, 1e-30), kMostLost * clamped) - clamped;
 }
 
 bool vplCounts(uint light, uint terms) { return (terms & (1u << uint(vplLights[light].power.w))) != 0u; }

@@ -1,20 +1,20 @@
-// Light of virtual point lights that media scatter to the eye; also for pixels that upsampling left open.
+// Light of virtual point lights that media scatter to the eye; also for pixels that upsampling leaves open.
 // COMPENSATION: kVplClamped, kVplClosedForm or kVplTraced.
 #define MARCH_FILLS
 #include "gi/shared/march.glsl"
 #include "gi/vpl/scattered_light.glsl"
 
-layout(std430) readonly buffer VplNear { vec4 vplNear[]; }; // nits that neither gathering nor its step near by brings, by square
+layout(std430) readonly buffer VplPathLight { vec4 vplPathLight[]; }; // nits of compensation paths, by square
 
-/// Of the square that a pixel lies in.
-vec3 nearLightOf(ivec2 pixel, ivec2 size) {
-    if ((vpl.nearLight & kVplNearMedia) == 0u) return vec3(0.0);
+/// Of the square of a pixel.
+vec3 pathLightOf(ivec2 pixel, ivec2 size) {
+    if ((vpl.pathLight & kVplPathsInMedia) == 0u) return vec3(0.0);
     ivec2 square = pixel / int(params.factor);
     int across = (size.x + int(params.factor) - 1) / int(params.factor);
-    return vplNear[square.y * across + square.x].rgb;
+    return vplPathLight[square.y * across + square.x].rgb;
 }
 
 vec3 mediaLight(Ray ray, float distance, ivec2 pixel, uvec2 number) {
     marchedMedia = params.media;
-    return lightScatteredAlong(ray, distance, number) + nearLightOf(pixel, textureSize(depth, 0));
+    return lightScatteredAlong(ray, distance, number) + pathLightOf(pixel, textureSize(depth, 0));
 }

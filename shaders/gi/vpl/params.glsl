@@ -1,4 +1,4 @@
-// Parameters of who gathers virtual point lights.
+// Parameters of passes that gather virtual point lights.
 #ifndef TYNDALL_GI_VPL_PARAMS
 #define TYNDALL_GI_VPL_PARAMS
 #include "shared/vpl.h"

@@ -1,6 +1,6 @@
-// Light of virtual point lights that media scatter along a ray. Each segment of the ray gathers, at one point, the walks of one class; the
-// next segment those of the next class (Engelhardt, Novák and Dachsbacher 2010, section 4.2).
-#include "gi/vpl/near_medium.glsl"
+// Light of virtual point lights that media scatter along a ray. Each segment of the ray gathers, at one point, one interleaved subset of the walks; the
+// next segment gathers the next subset (Engelhardt, Novák and Dachsbacher 2010, section 4.2).
+#include "gi/vpl/compensation.glsl"
 
 /// A direction from the mixture of phase functions that scatter the segment's light: where light that goes against `direction` came from.
 /// `weight`: of the function over the density.
@@ -22,8 +22,8 @@ vec3 phaseDirection(Segment s, vec3 direction, vec3 u, out float weight) {
     return normalize(frameAround(direction) * vec3(sine * cos(angle), sine * sin(angle), cosine));
 }
 
-/// 1/b of a point in a medium: no farther than the free path there, or what the bound takes away would be most of the light, and has to be followed on
-/// and on. As the processor has it (BiasCompensation::clampedOnGpu).
+/// 1/b of a point in a medium: at most the free path there, or clamping would remove most of the light and compensation would need many
+/// steps. As the processor has it (BiasCompensation::clampedOnGpu).
 float localClampSquared(vec3 position) {
     if (vpl.upToFreePath == 0u) return vplClampScale(position) * vpl.clampSquared;
     vec3 extinction = vec3(0.0);
@@ -38,19 +38,19 @@ vec3 scatteringOf(Segment s) {
     return sum;
 }
 
-/// Held light with what the bound takes away from it, as if light were even all around (validation: compensation algebra): with F the part that is lost of
-/// light that is scattered here, S = S_held + albedo F (S_direct + S).
-vec3 evenCompensation(vec3 held, float clampSquared, Segment s, Ray ray, vec3 u, uint number) {
+/// Clamped light compensated as if light were even: with F the part that clamping removes of
+/// light that is scattered here, S = S_clamped + albedo F (S_direct + S).
+vec3 evenCompensation(vec3 clamped, float clampSquared, Segment s, Ray ray, vec3 u, uint number) {
     float reach = sqrt(clampSquared);
     vec3 albedo = min(scatteringOf(s) / max(s.depth, vec3(1e-30)), vec3(1.0));
     vec3 again = albedo * clampLoss(s.depth * (reach / s.size));
     Segment here = pointSegment(ray, 0.0, reach);
     vec3 direct = s.size * segmentInScatter(ray, here, vpl.lightsOfScene, u, number);
-    return (held + again * direct) / max(1.0 - again, vec3(1e-3));
+    return (clamped + again * direct) / max(1.0 - again, vec3(1e-3));
 }
 
-/// Light that a segment scatters at `position` against `direction`: of one class of walks, and what compensation makes up for, from another's.
-/// A loop, for shaders are compiled with all that they call in place: walksInMedium() is to stand here once.
+/// Light that a segment scatters at `position` against `direction`: of one subset of the walks, and compensation from another subset.
+/// A loop: compilers inline all functions, and walksInMedium() must be inlined only once.
 vec3 gatherAt(uint number, uint other, vec3 position, vec3 direction, Segment s, vec4 u) {
     float clampSquared = localClampSquared(position);
     vec3 light = vec3(0.0);
@@ -58,10 +58,10 @@ vec3 gatherAt(uint number, uint other, vec3 position, vec3 direction, Segment s,
     Ray back = Ray(position, direction);
     vec3 at = position;
     Segment here = s;
-    float bound = clampSquared;
+    float stepClampSquared = clampSquared;
     for (uint step = 0u;; ++step) {
         uint terms = step == 0u ? vpl.mediaTerms : vplTermsOneStepOn(vpl.mediaTerms);
-        vec3 gathered = walksInMedium(step == 0u ? number : other, at, back.direction, here, bound, terms);
+        vec3 gathered = walksInMedium(step == 0u ? number : other, at, back.direction, here, stepClampSquared, terms);
 #if COMPENSATION == 2
         if (step > 0u && (vpl.mediaTerms & (1u << kVplOfMedia)) != 0u) gathered += segmentInScatter(back, here, vpl.lightsOfScene, u.xyz, number);
         light += weight * gathered;
@@ -72,7 +72,7 @@ vec3 gatherAt(uint number, uint other, vec3 position, vec3 direction, Segment s,
         float t;
         if (!drawNearPoint(position, back.direction, reach, u.w, t, here)) break;
         at = position + back.direction * t;
-        bound = relaxedBound(reach);
+        stepClampSquared = relaxedClampSquared(reach);
         weight = scatteringOf(s) * overDensity * nearPointWeight(position, back.direction, reach, t);
 #else
         light = gathered;
@@ -85,7 +85,7 @@ vec3 gatherAt(uint number, uint other, vec3 position, vec3 direction, Segment s,
     return light;
 }
 
-/// How much of what a ray gathers a segment stands for, were light the same everywhere: what it scatters and how much of that gets to the eye.
+/// Importance of a segment on its ray, as if light were the same everywhere: what it scatters times its transmittance to the eye.
 float importanceOf(Segment s, vec3 before) {
     return meanOf(scatteringOf(s) * exp(-before) * oneMinusExpOverX(s.depth));
 }
@@ -102,12 +102,12 @@ vec3 lightScatteredAlong(Ray ray, float distance, uvec2 pixel) {
     while (nextSegment(ray, march, s)) total += importanceOf(s, march.before);
     if (!(total > 0.0)) return sum;
 
-    uint number = uint(pixelNoise(pixel, 21u) * float(vpl.classes));
+    uint number = uint(pixelNoise(pixel, 21u) * float(vpl.subsets));
     // Along the segment; of the compensating vertex: class, distance; direction, medium.
     vec4 random = pixelRandom(pixel, 12u);
     float noise = random.w;
     vec4 u = pixelRandom(pixel, 15u);
-    uint other = uint(pixelRandom(pixel, 16u).x * float(vpl.classes));
+    uint other = uint(pixelRandom(pixel, 16u).x * float(vpl.subsets));
     float passed = pixelNoise(pixel, 28u); // in units of a sample: one is taken wherever this reaches a whole number
     float perSample = float(vpl.samples) / total;
     // Sample by sample, so that invocations side by side gather together however their segments lie.

@@ -1,5 +1,5 @@
-// Virtual lights in the finished picture: as balls, green on surfaces and red in media; what one of them or all of them see, a colour for each triangle's
-// normal; or, in the picture's place, the light that the bound takes away.
+// Virtual lights in the finished picture: as balls, green on surfaces and red in media; the visibility map of one or of all, a colour for each triangle's
+// normal; or, in place of the picture, the light that clamping removes.
 #include "gi/vpl/visibility.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;

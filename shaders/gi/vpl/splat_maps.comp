@@ -1,6 +1,6 @@
-// What virtual lights see, from points of surfaces: imperfect shadow maps (Ritschel et al. 2008). A work group makes one light's map: each point of the
-// light's set is splatted as a disc in its triangle's plane, the nearest wins its texel, and what is left open between points is filled from a pyramid of
-// the nearest ones. No number in the end depends on the order of threads.
+// Visibility maps from points of surfaces: imperfect shadow maps (Ritschel et al. 2008). A work group makes one light's map: each point of the
+// light's set is splatted as a disc in its triangle's plane, the nearest wins its texel, and gaps between points are filled from a pyramid of
+// the nearest ones. The result does not depend on the order of threads.
 #include "common/octahedral.glsl"
 #include "gi/vpl/map_texel.glsl"
 #include "shared/traced.h"
@@ -21,9 +21,9 @@ const uint kFinestCells = 64u;  // along an edge of the pyramid's finest level
 const float kFarthest = 1e30;
 const float kHole = 3.0;        // radii: farther from a point nothing is filled with it
 const float kSeam = 1e-3;       // barycentric: neighbours overlap
-const float kOwnPlane = 1e-4;   // of distances and coordinates: so near to the light's own plane a point hides nothing
+const float kOwnPlane = 1e-4;   // of distances and coordinates: so near to the light's own plane a point blocks nothing
 
-/// What a point is splatted as.
+/// The disc that a point is splatted as.
 struct Disc {
     vec3 way; // from the light to the point
     float toPlane; // dot(normal, way)
@@ -81,16 +81,16 @@ uint nearer(uint one, uint other, vec3 direction) {
 }
 
 void offer(uint texel, uint point, float distance, vec3 direction) {
-    uint held = vplMaps[mapStart + texel];
+    uint current = vplMaps[mapStart + texel];
     // Each round more means that another point, nearer than the last, took the texel.
     for (;;) {
-        if (held != kNothing) {
-            float there = distanceAlong(held, direction);
-            if (there < distance || (there == distance && held <= point)) return;
+        if (current != kNothing) {
+            float there = distanceAlong(current, direction);
+            if (there < distance || (there == distance && current <= point)) return;
         }
-        uint found = atomicCompSwap(vplMaps[mapStart + texel], held, point);
-        if (found == held) return;
-        held = found;
+        uint found = atomicCompSwap(vplMaps[mapStart + texel], current, point);
+        if (found == current) return;
+        current = found;
     }
 }
 
@@ -110,7 +110,7 @@ bool onDisc(uint point, Disc disc, vec3 at, float radii) {
     return min(second, third) >= -kSeam && second + third <= 1.0 + kSeam;
 }
 
-/// Rays may pass its triangle: nothing but the point itself hides anything.
+/// Rays may pass its triangle: only the point itself blocks.
 bool veils(uint point) { return tracedTriangles[vplPoints[point].triangle].corner.w == 0.0; }
 
 ivec2 texelOf(Disc disc) {
@@ -224,7 +224,7 @@ void finish(uint texels, uint cellWidth) {
         if (point == kNothing) {
             point = cells[texel / vpl.mapSide / cellWidth * side + texel % vpl.mapSide / cellWidth];
             if (point != kNothing) {
-                // Farther off there is nothing rather than something that points have missed.
+                // Farther away there is more likely no surface than one without points.
                 Disc disc = discOf(point);
                 vec3 direction = directionOf(texel);
                 if (!onDisc(point, disc, distanceAlong(disc, direction) * direction, kHole)) point = kNothing;
@@ -258,6 +258,6 @@ void main() {
     uint cellWidth = max(2u, (vpl.mapSide + kFinestCells - 1u) / kFinestCells);
     pullAndPush(cellWidth);
     finish(texels, cellWidth);
-    // Between points there may be something nearer, but not by much.
+    // Between points there may be a nearer surface, but not by much.
     if (gl_LocalInvocationIndex == 0u) vplMaps[vplNearestAt(light)] = floatBitsToUint(0.5 * uintBitsToFloat(nearestBits));
 }

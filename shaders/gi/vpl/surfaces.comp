@@ -1,19 +1,19 @@
 // Light of virtual point lights on surfaces, before the media between them and the eye: of a pixel in each square, the
-// parts of SurfaceLight side by side; or of pixels that upsampling left open, both together.
+// parts of SurfaceLight side by side; or of pixels that upsampling leaves open, their sum.
 #include "gi/vpl/gather_surface.glsl"
 #include "media/nearest_rays.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
 layout(std140) uniform Params { MarchParams params; };
-uniform sampler2D gathered; // with kMarchFill: what is there already; w: 0 where nothing is
+uniform sampler2D gathered; // with kMarchFill: the upsampled image; w: 0 where a pixel is open
 layout(rgba32f) writeonly uniform image2D surfaceLight; // three parts; or nits
 
 SurfaceLight lightAt(ivec2 pixel, uvec2 number, out Receiver r) {
     SurfaceLight light = kDark;
     if (!receiverAt(pixel, vpl.leastRoughness, r)) return light;
-    uint first = uint(pixelNoise(number, 20u) * float(vpl.surfaceClasses)) % vpl.surfaceClasses;
-    return gatherSurface(r, first, vpl.surfaceClasses, number);
+    uint first = uint(pixelNoise(number, 20u) * float(vpl.surfaceSubsets)) % vpl.surfaceSubsets;
+    return gatherSurface(r, first, vpl.surfaceSubsets, number);
 }
 
 void main() {

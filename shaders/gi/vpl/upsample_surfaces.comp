@@ -1,5 +1,5 @@
-// From the surfaces of surfaces.comp to every pixel: of the four nearest those count that lie in about the same plane and face the same way. A pixel that
-// none of them fits is left to it again: shaders that gather are large.
+// From the surfaces of surfaces.comp to every pixel: of the four nearest, those in about the same plane that face the same way. A pixel that
+// none of them fits is left to surfaces.comp again, because gathering shaders are large.
 #include "gi/shared/surface_light.glsl"
 #include "gi/vpl/params.glsl"
 #include "media/nearest_rays.glsl"
@@ -9,21 +9,21 @@ layout(local_size_x = 8, local_size_y = 8) in;
 layout(std140) uniform Params { MarchParams params; };
 uniform sampler2D squares; // the parts of SurfaceLight side by side
 uniform sampler2D transmittance; // of media in view
-layout(std430) readonly buffer VplNear { vec4 vplNear[]; }; // that neither gathering nor its step near by brings, by square: nits over reflectance()
-layout(rgba32f) writeonly uniform image2D surfaceRadiance; // w: 0 where what is there is not all yet
+layout(std430) readonly buffer VplPathLight { vec4 vplPathLight[]; }; // light of compensation paths, by square: nits over reflectance()
+layout(rgba32f) writeonly uniform image2D surfaceRadiance; // w: 0 where the pixel is left open
 
 const float kFar = 0.1; // of the distance to the eye: on a surface that is seen at a grazing angle neighbouring pixels lie far apart
 
 const float kDeep = 0.3; // optical depth over which light changes in a medium
 
-/// Of how much more medium one pixel is seen through than another: in thick fog light changes over a free path.
+/// Weight by the difference of optical depth in front of two pixels: in thick fog light changes over a free path.
 float depthApart(ivec2 a, ivec2 b) {
     if (vpl.mediaInView == 0u) return 0.0;
     vec3 quotient = max(texelFetch(transmittance, a, 0).rgb, vec3(1e-30)) / max(texelFetch(transmittance, b, 0).rgb, vec3(1e-30));
     return maximumOf(abs(log(quotient)));
 }
 
-/// How well the light of one surface stands for another's: 1 for a perfect fit.
+/// How well the light of one surface fits another: 1 for a perfect fit.
 float surfaceLikeness(Receiver r, Receiver other, float distance) {
     vec3 way = (other.position - r.position) / distance;
     float offPlane = abs(dot(r.facet, way));
@@ -33,7 +33,7 @@ float surfaceLikeness(Receiver r, Receiver other, float distance) {
     return f4 * f4 / (1.0 + offPlane / params.depthTolerance) / (1.0 + dot(way, way) / (kFar * kFar));
 }
 
-vec3 nearLightOf(ivec2 square, int squaresAcross) { return (vpl.nearLight & kVplNearSurfaces) != 0u ? vplNear[square.y * squaresAcross + square.x].rgb : vec3(0.0); }
+vec3 pathLightOf(ivec2 square, int squaresAcross) { return (vpl.pathLight & kVplPathsOnSurfaces) != 0u ? vplPathLight[square.y * squaresAcross + square.x].rgb : vec3(0.0); }
 
 void addSquare(inout SurfaceLight sum, ivec2 square, ivec2 right, float weight) {
     sum.diffuse += weight * texelFetch(squares, square, 0).rgb;
@@ -66,14 +66,14 @@ void main() {
             best = max(best, like);
             total += weight;
             addSquare(light, ray.coarse, right, weight);
-            near += weight * nearLightOf(ray.coarse, size.x);
+            near += weight * pathLightOf(ray.coarse, size.x);
         }
         total = max(total, 1e-30);
         near /= total;
         light = SurfaceLight(light.diffuse / total, light.specular / total, light.grazing / total);
     } else {
         addSquare(light, pixel, right, 1.0);
-        near = nearLightOf(pixel, size.x);
+        near = pathLightOf(pixel, size.x);
     }
     vec4 radiance = best < params.refineWeight ? vec4(0.0) : vec4(coloured(r, light), 1.0);
     radiance.rgb += near * reflectance(r);

@@ -1,4 +1,4 @@
-// What virtual point lights see. A light's map names, for each direction, the triangle that it sees first; where that leaves a doubt, all triangles are asked.
+// Visibility of virtual point lights. A light's map has the first triangle in each direction; where that does not decide, all triangles are tested.
 #ifndef TYNDALL_GI_VPL_VISIBILITY
 #define TYNDALL_GI_VPL_VISIBILITY
 #include "gi/shared/visibility.glsl"
@@ -9,8 +9,8 @@ layout(std430) readonly buffer VplMaps { uint vplMaps[]; };
 
 uint vplTriangleAt(uint light, ivec2 texel) { return vplMaps[vplMapStart(light) + vplTexelAt(texel)]; }
 
-/// Does the light see the point? `direction`: unit, from the light. The four texels around the direction are looked at: what has an outline within
-/// one of them is seen by another. A triangle there that lies between settles it, and so does it if the point lies behind none.
+/// Is the point visible from the light? `direction`: unit, from the light. The four texels around the direction are tested, because outlines end within
+/// texels. A triangle in one of them that lies between blocks the point; if the point is behind the plane of none, it is visible.
 bool vplSees(uint light, vec3 position, vec3 direction, float distance) {
     if (vpl.mapSide == 0u || distance < uintBitsToFloat(vplMaps[vplNearestAt(light)])) return true;
     float side = float(vpl.mapSide);

@@ -2,7 +2,7 @@
 """How long `tyndall reference` and Cycles (Blender's path tracer) take to the same error, on scenes that both mean alike.
 
     tests/bench/peers/peers.py -o out/peers
-    tests/bench/peers/peers.py -o out/peers --page docs/peers.md      # puts the table into the page
+    tests/bench/peers/peers.py -o out/peers --page docs/measured/peers.md      # puts the table into the page
     tests/bench/peers/peers.py -o /tmp/p --scenes fog_box --size 48x27 --spp 8,64 --reference-spp 256 --repeats 2    # a quick look
     tests/bench/peers/peers.py -o out/peers --engines cycles          # one side alone
 

@@ -62,8 +62,8 @@ std::string headOf(const std::vector<Outcome>& outcomes, const SuiteOptions& opt
     return fmt::format(
         R"(# Validation of the reference path tracer
 
-`tyndall reference` against what radiative transfer knows: {} rows of published, exact and recomputed results, none of which comes from
-this project's own code. This page is written by `make validation`; do not edit it.
+This page measures `tyndall reference` against {} published, exact and recomputed results of radiative transfer, on {}; `{}` makes it again.
+None of the results comes from this project's code. Do not edit this page by hand.
 
 | | rows |
 | --- | --- |
@@ -72,28 +72,29 @@ this project's own code. This page is written by `make validation`; do not edit 
 | unresolved: too little light for the effort, says nothing | {} |
 | skipped, with reasons below | {} |
 
-- {} rows are computed without chance, to a relative 1e-6 unless noted; {} are measured with {} independent batches each.
-- {} of these reach the aimed standard error of {:g} of the value; for the others the table says which one they reach.
+- {} rows are computed without random numbers, to a relative 1e-6 unless noted; {} are measured with {} independent batches each.
+- {} of these reach the standard error that was asked for, {:g} of the value; for the others the table gives the one that they reach.
 - All t values together: mean {:+.3f} ± {:.3f} (0 expected), variance {:.3f} ± {:.2f} (19/17 = 1.118 expected), {} of {} beyond 3.5 at first ({:.1f} expected);
   {} rows were measured a second time.
-- Command: `{}`; the tracer as of commit {}; {}; {}; {:.0f} s. The seed fixes every digit below, on any machine.
+- The tracer as of commit {}; {}; {:.0f} s. The seed fixes every digit below, on any machine.
 
 ## How to read it
-*Measured* has its standard error in parentheses, in units of its last digits: 0.36172(15) is 0.36172 ± 0.00015. *t* is measured less expected, over the
-standard error (with the expected value's own where it has one). A row passes where it is within half the last printed digit, or where |t| ≤ 3.5, which for
-{} batches chance exceeds once in 420 rows. A row beyond that is measured again with other random numbers and four times the effort, and the second
-measurement decides ("pass, 2nd"). Every row has random numbers of its own. A row is *unresolved* where the standard error is
-above 5 % of the value: so few paths find that light that a verdict would mean nothing. A row computed without chance has no t.
-*Line* is the line of the table `rt-tables.csv`; its conventions: σt = 1, so that metres are mean free paths; T includes the direct beam; radiances are for a
-perpendicular irradiance of π.
+- *Measured* has its standard error in parentheses, in units of its last digits: 0.36172(15) is 0.36172 ± 0.00015.
+- *t* is measured less expected, over the standard error (combined with the expected value's own where it has one). A row computed without random numbers has no t.
+- A row passes where it is within half the last printed digit, or where |t| ≤ 3.5. With {} batches a correct program exceeds 3.5 once in 420 rows. A row that exceeds it is measured again
+  with other random numbers and four times the effort, and the second measurement decides ("pass, 2nd"). Every row has random numbers of its own.
+- A row is *unresolved* where the standard error is above 5 % of the value: too few paths find that light for a verdict.
+- *Line* is the line of the table `rt-tables.csv`. Its conventions: σt = 1, so that metres are mean free paths; T includes the direct beam; radiances are for a
+  perpendicular irradiance of π.
 
 )",
-        outcomes.size(), counts[Verdict::Pass], counts[Verdict::Fail], counts[Verdict::Unresolved],
-        counts[Verdict::Skipped], exact, outcomes.size() - exact - counts[Verdict::Skipped],
-        kBatches, reached, options.relativeTarget, spread.mean, std::sqrt(1.118 / double(n)),
-        spread.variance, 1.118 * std::sqrt(2.4 / double(n)), spread.beyond, spread.count,
-        0.0024 * double(spread.count), repeated, facts.command, facts.version, facts.date,
-        facts.machine, facts.seconds, kBatches);
+        outcomes.size(), facts.machine, facts.command, counts[Verdict::Pass], counts[Verdict::Fail],
+        counts[Verdict::Unresolved], counts[Verdict::Skipped], exact,
+        outcomes.size() - exact - counts[Verdict::Skipped], kBatches, reached,
+        options.relativeTarget, spread.mean, std::sqrt(1.118 / double(n)), spread.variance,
+        1.118 * std::sqrt(2.4 / double(n)), spread.beyond, spread.count,
+        0.0024 * double(spread.count), repeated, facts.version, facts.date, facts.seconds,
+        kBatches);
 }
 
 std::string rowLine(const Outcome& o) {

@@ -1,7 +1,6 @@
-// What the bound on the geometry term takes away from the light of media near by: followed one step, to a point that gathers in turn, all lights
-// of the scene straight and one class of walks (validation: compensation algebra; transport.md 5.1 g, h).
-#ifndef TYNDALL_GI_VPL_NEAR_MEDIUM
-#define TYNDALL_GI_VPL_NEAR_MEDIUM
+// Bias compensation by one traced step: clamped light of media near by, from a point that gathers direct light and one interleaved subset of the walks.
+#ifndef TYNDALL_GI_VPL_COMPENSATION
+#define TYNDALL_GI_VPL_COMPENSATION
 #define MARCH_PHASE_GROUPS PHASE_GROUPS
 #include "common/random.glsl"
 #include "media/march.glsl"
@@ -18,37 +17,37 @@ vec3 lightInMedium(uint light, vec3 position, vec3 direction, Segment s, float c
     if (!(maximumOf(intensity) > 0.0) || !vplSees(light, position, -towards, distance)) return vec3(0.0);
     bool onSurface = vplLights[light].position.w < 0.0;
     float cosines = onSurface ? dot(vplLights[light].normal.xyz, -towards) : 1.0;
-    // What nothing makes up for is held less.
+    // Light that nothing compensates for is clamped less.
     float perArea = vplInverseSquare(squared, cosines, onSurface ? min(vplClampScale(position) * vpl.mediumClampSquared, clampSquared) : clampSquared);
     vec3 depth = vplOpticalDepth(light, position, towards, distance);
     return scatteredLight(s, dot(towards, direction), depth) * intensity * perArea;
 }
 
-/// Of those lights that count towards `terms`. One loop over all lights of the class's walks: invocations side by side gather other classes, and would wait for the longest of their walks each time.
+/// Of the lights that count towards `terms`. One loop over all lights of the subset's walks: neighbouring invocations gather other subsets, and with one loop for each walk they would wait for the longest walk each time.
 vec3 walksInMedium(uint number, vec3 position, vec3 direction, Segment s, float clampSquared, uint terms) {
     vec3 sum = vec3(0.0);
-    uint walk = number % vpl.classes;
+    uint walk = number % vpl.subsets;
     uint light = 0u;
     uint end = 0u; // of the walk's lights, of which there is at least one
     while (light < end || walk < vpl.walkCount) {
         if (light == end) {
             light = vplWalks[walk];
             end = vplWalks[walk + 1u];
-            walk += vpl.classes;
+            walk += vpl.subsets;
         }
         if (vplCounts(light, terms)) sum += lightInMedium(light, position, direction, s, clampSquared);
         ++light;
     }
-    return sum * float(vpl.classes);
+    return sum * float(vpl.subsets);
 }
 
-/// The lights that count at a point from which media scatter light on to a receiver for whom `terms` count.
+/// The lights that count at a point whose light media scatter on to a receiver for which `terms` count.
 uint vplTermsOneStepOn(uint terms) { return (terms & (1u << kVplLaterOfMedia)) != 0u ? kVplAllTerms : 0u; }
 
 /// A segment without length at a point: scattering coefficients in place of their integrals.
 Segment pointSegment(Ray ray, float at, float scale) {
     float size = max(1e-4 * scale, 1e-6 * (at + 1.0));
-    uint eyes = marchedMedia; // what counts is what the eye sees scattered, not where its light was scattered before
+    uint eyes = marchedMedia; // kinds count where light is scattered to the eye, not where it was scattered before
     marchedMedia = 0xffffffffu;
     Segment s = marchSegment(Ray(ray.origin + ray.direction * (at - 0.5 * size), ray.direction), 0.0, size);
     marchedMedia = eyes;
@@ -72,7 +71,7 @@ vec3 nearPointWeight(vec3 position, vec3 direction, float reach, float t) {
     return 2.0 / 3.0 * reach * exp(-opticalDepthAlong(position, direction, t));
 }
 
-/// 1/b at that point. What is gathered there has the bound relaxed, and misses what that takes away.
-float relaxedBound(float reach) { return reach * reach / (vpl.relaxed * vpl.relaxed); }
+/// 1/b at that point, with relaxed clamping; the light that this removes is not compensated for.
+float relaxedClampSquared(float reach) { return reach * reach / (vpl.relaxed * vpl.relaxed); }
 
 #endif
