@@ -62,6 +62,8 @@ struct VplParams {
     // Which lights count on surfaces and in media, a bit for each of kVplOfSurfaces and so on: each is the light of one term there.
     uint surfaceTerms, mediaTerms;
     uint upToFreePath; // 1: in a medium 1/b reaches no farther than the free path there
+    uint firstPoint, endPoint; // of a ray's points those at which this turn gathers: what earlier turns found is in the picture
+    uint padding0, padding1;
 };
 
 // By the last scattering of a light's power, and by whether that was its first.
@@ -71,6 +73,8 @@ TYNDALL_CONST uint kVplAllTerms = 15u;
 
 TYNDALL_CONST uint kVplNearSurfaces = 1u;
 TYNDALL_CONST uint kVplNearMedia = 2u;
+
+TYNDALL_CONST uint kVplAllPoints = 0xffffffffu; // endPoint of the last turn
 
 struct VplShowParams {
     uint what;                                    // kVplShowLights and so on
