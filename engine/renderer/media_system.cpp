@@ -2,13 +2,11 @@
 
 #include <algorithm>
 #include <bit>
-#include <cmath>
 
 #include "framegraph/hash.h"
 #include "gl/buffer.h"
 #include "gl/texture.h"
 #include "media/blackbody.h"
-#include "media/brick_grid.h"
 
 namespace tyndall {
 namespace {
@@ -241,28 +239,6 @@ void MediaSystem::uploadViews() {
                           views_, viewsBuffer_, viewsVersion_);
 }
 
-/// How much of all this a ray meets.
-void MediaSystem::measure(const MediaFrameRequest& request, const gpu::MediaHeader& header,
-                          const std::vector<PlacedMedium>& chosen, MediaResources& r) const {
-    const auto steps = [&](double cells) { return uint32_t(std::ceil(cells / double(settings_.stepScale))); };
-    r.bricksOnRay = 0;
-    r.stepsOnRay = 0;
-    for (const PlacedMedium& medium : chosen) {
-        if (medium.data.kind != gpu::kMediumGrid) {
-            r.stepsOnRay += header.analyticSteps + 2;
-            continue;
-        }
-        const ivec3 bricks(medium.data.gridBricks);
-        const auto most = uint32_t(bricks.x + bricks.y + bricks.z); // that a ray crosses
-        r.bricksOnRay += most;
-        r.stepsOnRay += most + steps(kBrickCells * glm::length(dvec3(bricks)));
-    }
-    r.stepsInBrick = std::min(steps(kBrickCells * std::sqrt(3.0)), gpu::kMostBrickSteps);
-    const uint32_t stride = std::max(header.environmentStride, 1u);
-    r.lightsAtOnce = uint32_t(request.lights.size()) - header.environmentLights +
-                     (header.environmentLights + stride - 1) / stride;
-}
-
 MediaFrame MediaSystem::beginFrame(fg::FrameGraph& graph, const MediaFrameRequest& request) {
     CHECK(request.view);
     CHECK(scene_, "update() comes before beginFrame()");
@@ -298,7 +274,7 @@ MediaFrame MediaSystem::beginFrame(fg::FrameGraph& graph, const MediaFrameReques
     if (header.gridCount > 0 && (header.flags & gpu::kMediaLightDepthVolume) != 0 && !marched)
         r.kinds |= gpu::kMediaLightVolumes;
     r.phaseGroups = header.phaseGroupCount == 1 ? 1 : gpu::kMaxPhaseGroups;
-    measure(request, header, chosen, r);
+    countOnRays(chosen, header, uint32_t(request.lights.size()), r);
     return frame;
 }
 

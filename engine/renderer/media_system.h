@@ -75,8 +75,6 @@ private:
                                 std::vector<PlacedMedium>& chosen);
     void layOut(const MediaFrameRequest& request, const std::vector<PlacedMedium>& chosen,
                 bool volumes, MediaFrame& frame);
-    void measure(const MediaFrameRequest& request, const gpu::MediaHeader& header,
-                 const std::vector<PlacedMedium>& chosen, MediaResources& r) const;
     void uploadTable(const gpu::MediaHeader& header, const std::vector<PlacedMedium>& chosen);
     void uploadViews();
     fg::StaticBuffer upload(const char* name, std::span<const std::byte> data,
