@@ -29,6 +29,7 @@ struct LightFrame {
     dvec3 renderOrigin{0}; // world
     Bounds casters;        // of the surfaces that may cast shadows, render space; empty without
     const ViewResources* view = nullptr; // its flags say whether frames are averaged
+    bool mediaOff = false; // media.enabled: none glows
 };
 
 class LightSystem {

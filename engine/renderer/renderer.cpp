@@ -74,7 +74,7 @@ Result<void> Renderer::Impl::updateScene(const FrameRequest& request, const Came
     if (Result<void> done = media.update(*scene, renderOrigin); !done) return done;
     if (Result<void> done = environment.update(*scene); !done) return done;
     if (Result<void> done = blended.update(surfaces, order.view); !done) return done;
-    lights.update({scene, renderOrigin, surfaces.bounds(), &order.view});
+    lights.update({scene, renderOrigin, surfaces.bounds(), &order.view, !media.settings().enabled});
     surfaceBounds.clear();
     for (const DrawItem& item : surfaces.items()) surfaceBounds.push_back(item.bounds);
     order.surfaceBounds = surfaceBounds;

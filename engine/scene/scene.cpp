@@ -58,7 +58,7 @@ std::vector<bool> Scene::worldVisibility() const {
 }
 
 /// Of each visible mesh, instance and bounded medium; none is empty.
-std::vector<Bounds> Scene::worldBoxes() const {
+std::vector<Bounds> Scene::worldBoxes(bool withMedia) const {
     const std::vector<dmat4> world = worldTransforms();
     const std::vector<bool> visible = worldVisibility();
     std::vector<Bounds> boxes;
@@ -73,18 +73,19 @@ std::vector<Bounds> Scene::worldBoxes() const {
             if (node.instances.empty()) add(local, world[i]);
             for (const dmat4& instance : node.instances) add(local, world[i] * instance);
         }
-        if (node.medium != kNone) add(localBounds(media[size_t(node.medium)]), world[i]);
+        if (withMedia && node.medium != kNone)
+            add(localBounds(media[size_t(node.medium)]), world[i]);
     }
     return boxes;
 }
 
 Bounds Scene::worldBounds() const {
     Bounds bounds;
-    for (const Bounds& box : worldBoxes()) bounds.include(box);
+    for (const Bounds& box : worldBoxes(true)) bounds.include(box);
     return bounds;
 }
 
-Bounds Scene::contentBounds() const {
+Bounds Scene::contentBounds(bool withMedia) const {
     constexpr double kManyTimes = 6;
     constexpr double kFlatScene = 0.25, kFlatBox = 0.05; // least extent over longest
     const auto longest = [](const Bounds& b) {
@@ -95,7 +96,7 @@ Bounds Scene::contentBounds() const {
         const dvec3 extent = b.extent();
         return std::min({extent.x, extent.y, extent.z}) <= ratio * longest(b);
     };
-    std::vector<Bounds> boxes = worldBoxes();
+    std::vector<Bounds> boxes = worldBoxes(withMedia);
     std::sort(boxes.begin(), boxes.end(),
               [&](const Bounds& a, const Bounds& b) { return longest(a) < longest(b); });
     std::vector<Bounds> smaller(1); // of all boxes before each

@@ -226,10 +226,10 @@ struct Scene {
     [[nodiscard]] Bounds worldBounds() const;
     /// worldBounds() without the landscape: without what is flat and many times longer than all that is smaller, in scenes that are
     /// flat themselves.
-    [[nodiscard]] Bounds contentBounds() const;
+    [[nodiscard]] Bounds contentBounds(bool withMedia = true) const;
 
 private:
-    [[nodiscard]] std::vector<Bounds> worldBoxes() const;
+    [[nodiscard]] std::vector<Bounds> worldBoxes(bool withMedia) const;
 };
 
 } // namespace tyndall

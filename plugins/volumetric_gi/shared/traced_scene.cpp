@@ -109,10 +109,11 @@ bool TracedScene::moveSurfaces(const Scene& scene, const dvec3& origin) {
     return true;
 }
 
-void TracedScene::updateMedia(const Scene& scene, const dvec3& origin, bool useProxies) {
+void TracedScene::updateMedia(const Scene& scene, const dvec3& origin, bool off, bool useProxies) {
     scene_.lights.reset(); // keeps references to media
     std::unique_ptr<tracing::MediaField> proxies = std::move(usesProxies_ ? scene_.media : otherMedia_);
-    auto actual = std::make_unique<tracing::MediaField>(scene, origin);
+    auto actual = off ? std::make_unique<tracing::MediaField>()
+                      : std::make_unique<tracing::MediaField>(scene, origin);
     if (useProxies) {
         tracing::ProxyMedia made = tracing::makeProxyMedia(scene, origin);
         // Paths that are kept name the media that they went through: these stay while nothing about them changes.
@@ -125,8 +126,8 @@ void TracedScene::updateMedia(const Scene& scene, const dvec3& origin, bool useP
     otherMedia_ = std::move(useProxies ? actual : proxies);
 }
 
-void TracedScene::updateContent(const Scene& scene, const dvec3& origin) {
-    content_ = scene.contentBounds();
+void TracedScene::updateContent(const Scene& scene, const dvec3& origin, bool mediaOff) {
+    content_ = scene.contentBounds(!mediaOff);
     if (!content_.empty()) {
         content_.minimum -= origin;
         content_.maximum -= origin;
@@ -139,8 +140,9 @@ Result<void> TracedScene::update(const plugin::FrameInputs& inputs,
     const Scene& scene = *inputs.whole;
     const SceneVersions& now = scene.versions;
     const dvec3 origin(inputs.origin[0], inputs.origin[1], inputs.origin[2]);
+    const bool useProxies = options.proxyMedia && !inputs.mediaOff;
     const uint64_t key =
-        cacheKey(options.proxyMedia, now.structure, now.transforms, now.meshes, now.materials,
+        cacheKey(useProxies, inputs.mediaOff, now.structure, now.transforms, now.meshes, now.materials,
                  now.textures, now.lights, now.media, now.environment, origin);
     if (whole_ == &scene && key == key_) return {};
 
@@ -157,10 +159,10 @@ Result<void> TracedScene::update(const plugin::FrameInputs& inputs,
             }
         }
     }
-    updateMedia(scene, origin, options.proxyMedia);
+    updateMedia(scene, origin, inputs.mediaOff, useProxies);
     scene_.lights =
         std::make_unique<tracing::Lights>(scene, origin, *scene_.surfaces, *scene_.media);
-    updateContent(scene, origin);
+    updateContent(scene, origin, inputs.mediaOff);
     emission_ = std::make_unique<tracing::LightEmission>(scene_, content_);
     key_ = key;
     walksKey_ = usesProxies_ ? cacheKey(proxyHash_, keys.surfaces, keys.lights, content_) : key;

@@ -69,8 +69,8 @@ public:
 private:
     Result<void> updateSurfaces(const Scene& scene, const dvec3& origin);
     bool moveSurfaces(const Scene& scene, const dvec3& origin);
-    void updateMedia(const Scene& scene, const dvec3& origin, bool useProxies);
-    void updateContent(const Scene& scene, const dvec3& origin);
+    void updateMedia(const Scene& scene, const dvec3& origin, bool off, bool useProxies);
+    void updateContent(const Scene& scene, const dvec3& origin, bool mediaOff);
 
     tracing::TracerScene scene_;
     std::unique_ptr<tracing::MediaField>
