@@ -48,6 +48,11 @@ struct MediaResources {
     uint32_t kinds = 0; // the define MEDIA_KINDS: kMediaShapes and so on in shared/medium.h
     uint32_t phaseGroups =
         1; // the define PHASE_GROUPS: 1 where one phase function is enough, else 8
+    // How much a ray meets at most, for plugin/shader_rounds.h; grids in steps, not cell by cell.
+    uint32_t bricksOnRay = 0;  // of all grids
+    uint32_t stepsInBrick = 0; // of one
+    uint32_t stepsOnRay = 0;   // through all media
+    uint32_t lightsAtOnce = 0; // that a point of a march gathers straight, with the environment's
 };
 
 /// The define MEDIA_KINDS for a shader; `towardsLights`: it needs optical depth towards lights. Some combinations share

@@ -128,6 +128,7 @@ struct FrameInputs {
     MediaSet kinds;   // of media in which it computes its terms in media
     bool statistics;  // FrameOutputs::statistics are wanted
     float whiteNits;  // luminance that the picture's exposure makes white, before the tone curve
+    bool mediaOff;    // media.enabled: those of `whole` are not there
 };
 
 /// A number about a frame: "iterations.gi.lpv", "residual.gi.lpv", "energy.gi.lpv.injected". The part before the first dot names its kind.

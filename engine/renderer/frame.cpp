@@ -161,7 +161,8 @@ FrameImages recordFrame(fg::FrameGraph& graph, const FrameParts& parts, const Fr
                                0,
                                0,
                                order.statistics,
-                               displayWhite(order.ev100, parts.postSettings)};
+                               displayWhite(order.ev100, parts.postSettings),
+                               !media.settings->enabled};
     addTechniques(graph, parts, order, inputs, images);
 
     // Transparent surfaces, then the sum of all terms.

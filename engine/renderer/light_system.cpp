@@ -223,7 +223,7 @@ void LightSystem::addEnvironment(const LightFrame& frame, std::vector<Collected>
 void LightSystem::addMedia(const LightFrame& frame, std::vector<Collected>& all) {
     const gpu::ViewData& view = frame.view->data;
     const bool converge = (view.flags & gpu::kViewConverge) != 0;
-    for (size_t i = 0; i < media_.emitters.size(); ++i) {
+    for (size_t i = 0; i < media_.emitters.size() && !frame.mediaOff; ++i) {
         const MediumEmitter& emitter = media_.emitters[i];
         const uint64_t key = fg::mixHash(uint64_t(view.seed) + 67, uint64_t(media_.nodes[i]));
         for (const MediumLight& light :

@@ -30,6 +30,7 @@ struct LightFrame {
     std::span<const Bounds> casters; // of each surface that may cast shadows, render space
     Bounds surroundings, withLamps;  // SceneReach, render space
     const ViewResources* view = nullptr; // its flags say whether frames are averaged
+    bool mediaOff = false; // media.enabled: none glows
 };
 
 class LightSystem {

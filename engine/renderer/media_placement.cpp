@@ -279,4 +279,25 @@ uint32_t assignPhaseGroups(std::span<PlacedMedium> media, gpu::MediaHeader& head
     return std::max(count, 1u);
 }
 
+void countOnRays(std::span<const PlacedMedium> media, const gpu::MediaHeader& header,
+                 uint32_t lightCount, MediaResources& resources) {
+    const auto steps = [&](double cells) {
+        return uint32_t(std::ceil(cells / double(header.stepVoxels)));
+    };
+    for (const PlacedMedium& medium : media) {
+        if (medium.data.kind != gpu::kMediumGrid) {
+            resources.stepsOnRay += header.analyticSteps + 2;
+            continue;
+        }
+        const ivec3 bricks(medium.data.gridBricks);
+        const auto crossed = uint32_t(bricks.x + bricks.y + bricks.z);
+        resources.bricksOnRay += crossed;
+        resources.stepsOnRay += crossed + steps(kBrickCells * glm::length(dvec3(bricks)));
+    }
+    resources.stepsInBrick = std::min(steps(kBrickCells * std::sqrt(3.0)), gpu::kMostBrickSteps);
+    const uint32_t stride = std::max(header.environmentStride, 1u);
+    resources.lightsAtOnce = lightCount - header.environmentLights +
+                             (header.environmentLights + stride - 1) / stride;
+}
+
 } // namespace tyndall

@@ -45,4 +45,8 @@ std::vector<MediumUse> classifyMedia(std::span<const PlacedMedium> media, const 
 uint32_t assignPhaseGroups(std::span<PlacedMedium> media, gpu::MediaHeader& header,
                            std::vector<std::string>& notes);
 
+/// How much a ray meets at most: bricksOnRay and so on. Brick tables are filled in. `lightCount`: with the environment's.
+void countOnRays(std::span<const PlacedMedium> media, const gpu::MediaHeader& header,
+                 uint32_t lightCount, MediaResources& resources);
+
 } // namespace tyndall

@@ -274,6 +274,7 @@ MediaFrame MediaSystem::beginFrame(fg::FrameGraph& graph, const MediaFrameReques
     if (header.gridCount > 0 && (header.flags & gpu::kMediaLightDepthVolume) != 0 && !marched)
         r.kinds |= gpu::kMediaLightVolumes;
     r.phaseGroups = header.phaseGroupCount == 1 ? 1 : gpu::kMaxPhaseGroups;
+    countOnRays(chosen, header, uint32_t(request.lights.size()), r);
     return frame;
 }
 

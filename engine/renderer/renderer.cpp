@@ -63,9 +63,11 @@ void Renderer::Impl::updateReach(const Viewer& viewer) {
     const auto parts = [](const SceneVersions& v) {
         return std::tie(v.structure, v.transforms, v.meshes, v.media, v.lights);
     };
-    if (parts(now) != parts(seenClusters)) {
-        clusters = findClusters(*scene);
+    const bool mediaOff = !media.settings().enabled;
+    if (parts(now) != parts(seenClusters) || mediaOff != seenMediaOff) {
+        clusters = findClusters(*scene, mediaOff);
         seenClusters = now;
+        seenMediaOff = mediaOff;
     }
     reach = reachOf(clusters, viewer);
 }
@@ -94,7 +96,7 @@ Result<void> Renderer::Impl::updateScene(const FrameRequest& request, const Came
         return Bounds{world.minimum - renderOrigin, world.maximum - renderOrigin};
     };
     lights.update({scene, renderOrigin, surfaceBounds, toRender(reach.surroundings),
-                   toRender(reach.withLamps), &order.view});
+                   toRender(reach.withLamps), &order.view, !media.settings().enabled});
     order.surfaceBounds = surfaceBounds;
     return {};
 }

@@ -56,6 +56,7 @@ struct Renderer::Impl {
     const Scene* scene = nullptr;
     SceneClusters clusters;
     SceneVersions seenClusters; // of what clusters was made from
+    bool seenMediaOff = false;
     SceneReach reach;           // of this frame's view
     dvec3 renderOrigin{0};
     std::vector<Bounds> surfaceBounds;

@@ -129,10 +129,11 @@ bool SceneReach::operator==(const SceneReach& other) const {
            same(withLamps, other.withLamps) && same(seen, other.seen);
 }
 
-SceneClusters findClusters(const Scene& scene) {
+SceneClusters findClusters(const Scene& scene, bool withoutMedia) {
     SceneClusters found;
     std::vector<Bounds> boxes;
     scene.forEachBox([&](int node, bool isMedium, const Bounds& box) {
+        if (isMedium && withoutMedia) return;
         WideMedium wide;
         if (isMedium && isWide(scene.media[size_t(scene.nodes[size_t(node)].medium)], box, wide))
             found.wide.push_back(wide);

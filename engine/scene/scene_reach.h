@@ -28,7 +28,7 @@ struct SceneClusters {
 };
 
 /// Of what is visible. Linear in the number of things, but for scenes of many clusters: past 64 all the rest counts as one.
-[[nodiscard]] SceneClusters findClusters(const Scene& scene);
+[[nodiscard]] SceneClusters findClusters(const Scene& scene, bool withoutMedia = false);
 
 /// Where somebody stands and looks. World space.
 struct Viewer {

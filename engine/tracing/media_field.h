@@ -123,6 +123,8 @@ private:
 class MediaField {
 public:
     using Change = std::function<void(Medium&, dmat4& rayFromNode)>;
+    /// No media.
+    MediaField() = default;
     /// `origin`: the world's point that becomes the origin of ray space. `change`: is applied to each medium first.
     MediaField(const Scene& scene, const dvec3& origin, const Change& change = {});
 

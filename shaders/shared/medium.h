@@ -17,6 +17,8 @@ TYNDALL_CONST uint kPhaseCornetteShanks = 2u;
 
 TYNDALL_CONST uint kNoSlot = 0xffffffffu;
 
+TYNDALL_CONST uint kMostBrickSteps = 64u; // that optical depth takes through a brick
+
 TYNDALL_CONST uint kMaxPhaseGroups = 8u; // different phase functions that a ray's media may have
 
 // The define MEDIA_KINDS: what a frame's media are made of.

@@ -61,7 +61,9 @@ struct VplParams {
     uint pathLight; // kVplPathsOnSurfaces and so on: light of compensation paths is in `VplPathLight`
     // Which lights count on surfaces and in media, a bit for each of kVplOfSurfaces and so on: each is the light of one term there.
     uint surfaceTerms, mediaTerms;
-    uint upToFreePath; // 1: in a medium the clamp distance is at most the free path there
+    uint upToFreePath; // 1: in a medium 1/b reaches no farther than the free path there
+    uint firstPoint, endPoint; // of a ray's points those at which this turn gathers: what earlier turns found is in the picture
+    uint padding0, padding1;
 };
 
 // By the last scattering of a light's power, and by whether that was its first.
@@ -71,6 +73,8 @@ TYNDALL_CONST uint kVplAllTerms = 15u;
 
 TYNDALL_CONST uint kVplPathsOnSurfaces = 1u;
 TYNDALL_CONST uint kVplPathsInMedia = 2u;
+
+TYNDALL_CONST uint kVplAllPoints = 0xffffffffu; // endPoint of the last turn
 
 struct VplShowParams {
     uint what;                                    // kVplShowLights and so on

@@ -1,4 +1,5 @@
 // Optical depth of every kind of medium along random rays against integration in double precision.
+#include <algorithm>
 #include <cmath>
 #include <random>
 
@@ -6,6 +7,8 @@
 
 #include "gl/gl_fixture.h"
 #include "media/segment_integral.h"
+#include "plugin/shader_rounds.h"
+#include "renderer/media_placement.h"
 #include "shaders/media_compute.h"
 #include "support/content.h"
 
@@ -194,6 +197,47 @@ TEST_P(MediaDepth, GridByStepsConvergesToTheExactDepth) {
     // Random voxels are the hardest field there is; the mid-point rule leaves h²/24 of its curvature, and texture filtering 1/256 of its steps.
     expectDepths(gridMedium(worldFromIndex, seed()), dmat4(1.0), randomRays(2, 300, seed() + 8),
                  5e-3, 5e-3, options);
+}
+
+TEST_P(MediaDepth, TakesNoMoreRoundsOfLoopsThanAreCountedOn) {
+    // Where a driver ends loops after so many rounds, a loop without an end tells how many were left.
+    constexpr float kNeverSoMany = 70000;
+    std::vector<Medium> media{homogeneous(MediumKind::Box),
+                              gridMedium(glm::scale(dmat4(1.0), dvec3(0.05)), seed())};
+    const std::vector<dmat4> world(2, dmat4(1.0));
+    const Scene scene = sceneOf(media, world);
+    const Rays rays = randomRays(2, 300, seed() + 11);
+    for (const float step : {0.1f, 0.5f, 1.0f, 4.0f}) {
+        MediaOptions options;
+        options.flags = 0;
+        options.stepVoxels = step;
+        gl::ShaderLibrary library;
+        MediaCompute compute(scene, options);
+        const auto rounds = [&](const std::string& before) {
+            const auto outputs = compute.run(
+                library, {"media/optical_depth.glsl"},
+                "vec4 a = inputs[2u * id]; vec4 b = inputs[2u * id + 1u]; vec3 depth = vec3(0);" +
+                    before + "float left = 0.0; while (left < " + std::to_string(kNeverSoMany) +
+                    " + 0.0 * depth.x) left += 1.0; outputs[id] = vec4(depth, left);",
+                rays.inputs, uint32_t(rays.count()));
+            return std::min_element(outputs.begin(), outputs.end(), [](const vec4& a, const vec4& b) {
+                       return a.w < b.w;
+                   })->w;
+        };
+        const float all = rounds("depth.x = min(abs(a.w), 1.0);");
+        if (all == kNeverSoMany) GTEST_SKIP() << "this driver does not end loops";
+        const float left = rounds("depth = opticalDepthAlong(a.xyz, b.xyz, a.w);");
+        MediaResources resources;
+        resources.count = 2;
+        gpu::MediaHeader header{};
+        header.stepVoxels = step;
+        header.analyticSteps = options.steps;
+        countOnRays(compute.placed(), header, 0, resources);
+        const double counted = opticalDepthRounds(resources);
+        printf("steps of %g voxels: %g rounds, %g counted on\n", double(step), double(all - left), counted);
+        EXPECT_GT(all - left, 0);
+        EXPECT_LE(double(all - left), counted);
+    }
 }
 
 TEST_P(MediaDepth, FarFromTheOriginNothingIsLost) {

@@ -118,10 +118,11 @@ bool TracedScene::moveSurfaces(const Scene& scene, const dvec3& origin) {
     return true;
 }
 
-void TracedScene::updateMedia(const Scene& scene, const dvec3& origin, bool useProxies) {
+void TracedScene::updateMedia(const Scene& scene, const dvec3& origin, bool off, bool useProxies) {
     scene_.lights.reset(); // keeps references to media
     std::unique_ptr<tracing::MediaField> proxies = std::move(usesProxies_ ? scene_.media : otherMedia_);
-    auto actual = std::make_unique<tracing::MediaField>(scene, origin);
+    auto actual = off ? std::make_unique<tracing::MediaField>()
+                      : std::make_unique<tracing::MediaField>(scene, origin);
     if (useProxies) {
         tracing::ProxyMedia made = tracing::makeProxyMedia(scene, origin);
         // Kept paths point to their media, which therefore stay while nothing about them changes.
@@ -141,8 +142,9 @@ Result<void> TracedScene::update(const plugin::FrameInputs& inputs,
     const dvec3 origin(inputs.origin[0], inputs.origin[1], inputs.origin[2]);
     const Bounds content = roughly(boundsOf(inputs.scene.contentMinimum, inputs.scene.contentMaximum)),
                  surroundings = roughly(boundsOf(inputs.scene.boundsMinimum, inputs.scene.boundsMaximum));
+    const bool useProxies = options.proxyMedia && !inputs.mediaOff;
     const uint64_t key =
-        cacheKey(options.proxyMedia, content, surroundings, now.structure, now.transforms, now.meshes, now.materials,
+        cacheKey(useProxies, inputs.mediaOff, content, surroundings, now.structure, now.transforms, now.meshes, now.materials,
                  now.textures, now.lights, now.media, now.environment, origin);
     if (whole_ == &scene && key == key_) return {};
 
@@ -159,7 +161,7 @@ Result<void> TracedScene::update(const plugin::FrameInputs& inputs,
             }
         }
     }
-    updateMedia(scene, origin, options.proxyMedia);
+    updateMedia(scene, origin, inputs.mediaOff, useProxies);
     scene_.lights =
         std::make_unique<tracing::Lights>(scene, origin, *scene_.surfaces, *scene_.media);
     content_ = content;

@@ -69,7 +69,7 @@ public:
 private:
     Result<void> updateSurfaces(const Scene& scene, const dvec3& origin);
     bool moveSurfaces(const Scene& scene, const dvec3& origin);
-    void updateMedia(const Scene& scene, const dvec3& origin, bool useProxies);
+    void updateMedia(const Scene& scene, const dvec3& origin, bool off, bool useProxies);
 
     tracing::TracerScene scene_;
     std::unique_ptr<tracing::MediaField>

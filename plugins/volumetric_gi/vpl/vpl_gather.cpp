@@ -72,6 +72,20 @@ fg::ComputeCommand& bindSurfaces(fg::ComputeCommand& command, const GatherData& 
 constexpr LightMarchNames kMarchNames{"gi.vpl.march", "gi.vpl.upsample", "gi.vpl.refine",
                                       "gi.vpl.inScatter", "gi.vpl.inScatter"};
 
+/// The points of a ray in turns.
+void gatherInTurns(GatherData data, const LightMarch& march, uint32_t pointsATurn,
+                   fg::PassContext& context) {
+    gpu::VplParams& params = data.params;
+    for (params.firstPoint = 0; params.firstPoint < params.samples; params.firstPoint += pointsATurn) {
+        if (params.firstPoint > 0) context.barrier(fg::Access::StorageWrite);
+        const bool last = params.samples - params.firstPoint <= pointsATurn;
+        params.endPoint = last ? gpu::kVplAllPoints : params.firstPoint + pointsATurn;
+        auto command = begin(data, context, "gi/vpl/march.comp", params.compensation);
+        command.bind("VplPathLight", data.lights.pathsInMedia);
+        bindLightMarch(command, march).dispatchOver(march.light);
+    }
+}
+
 /// Light that media scatter to the eye.
 fg::TextureHandle addMarch(fg::FrameGraph& graph, const plugin::FrameInputs& inputs,
                            const VplBuffers& lights, const VplGather& gather, MarchStage stage,
@@ -79,6 +93,7 @@ fg::TextureHandle addMarch(fg::FrameGraph& graph, const plugin::FrameInputs& inp
     struct Data {
         GatherData gather;
         LightMarch march;
+        uint32_t pointsATurn = 1;
     };
     return graph
         .addPass<Data>(
@@ -89,16 +104,14 @@ fg::TextureHandle addMarch(fg::FrameGraph& graph, const plugin::FrameInputs& inp
                 declare(builder, data.gather, inputs, lights, gather, stage, gather.mediaFactor);
                 if (stage != MarchStage::Spread)
                     data.gather.lights.pathsInMedia = builder.read(lights.pathsInMedia);
+                data.pointsATurn = gather.pointsATurn;
                 data.march = declareLightMarch(builder, data.gather.march, inputs.transmittance,
                                                before, kMarchNames);
             },
             [](const Data& data, fg::PassContext& context) {
-                const GatherData& from = data.gather;
-                const bool spreads = from.march.stage == MarchStage::Spread;
-                auto command =
-                    spreads ? context.compute("gi/vpl/upsample.comp")
-                            : begin(from, context, "gi/vpl/march.comp", from.params.compensation);
-                if (!spreads) command.bind("VplPathLight", from.lights.pathsInMedia);
+                if (data.gather.march.stage != MarchStage::Spread)
+                    return gatherInTurns(data.gather, data.march, data.pointsATurn, context);
+                auto command = context.compute("gi/vpl/upsample.comp");
                 bindLightMarch(command, data.march).dispatchOver(data.march.light);
             })
         .march.light;

@@ -43,6 +43,7 @@ struct VplUpload {
 struct VplGather {
     gpu::VplParams params{};
     int surfaceFactor = 1, mediaFactor = 1; // pixels along an edge of the squares that gather once
+    uint32_t pointsATurn = 1; // along a ray through media (vpl_rounds.h)
 };
 
 [[nodiscard]] VplBuffers addVplUpload(fg::FrameGraph& graph, const plugin::FrameInputs& inputs,

@@ -8,24 +8,10 @@
 #include "plugin/cache_key.h"
 #include "volumetric_gi/vpl/vpl_choice.h"
 #include "volumetric_gi/vpl/vpl_maps.h"
+#include "volumetric_gi/vpl/vpl_rounds.h"
 
 namespace tyndall::volumetric_gi {
 namespace {
-
-/// Rounds of loops that one invocation of a shader may run: llvmpipe ends them all at 65,535, and marches take some, too.
-constexpr double kMostRounds = 40000;
-/// Of walks through the tree of triangles, over its depth; maps leave few doubts, but invocations side by side wait for each other's.
-constexpr double kRoundsOfDoubt = 1;
-/// Behind leaves there is always a doubt.
-constexpr double kRoundsBehindLeaves = 3;
-
-/// That each light gathered takes: its own, one for each medium's optical depth and each phase function, a grid's four texels, and the tree's.
-double roundsOfLight(const MediaResources& media, bool grids, const TracedScene& scene) {
-    return 1 + double(media.count) + (media.phaseGroups > 1 ? double(media.phaseGroups) : 0) +
-           (grids ? 4 : 0) +
-           (scene.hasHoles() ? kRoundsBehindLeaves : kRoundsOfDoubt) *
-               std::log2(double(scene.tree().size()) + 1);
-}
 
 /// Radius of a light in the debug view, over the mean distance between lights.
 constexpr double kBall = 0.08;
@@ -287,15 +273,10 @@ VplGather VplTechnique::gather(const plugin::FrameInputs& inputs) const {
     Bounds grids;
     for (const tracing::MediumSource& medium : scene_.media().media())
         if (medium.isGrid()) grids.include(medium.bounds());
-    const double rounds =
-        roundsOfLight(inputs.media, !grids.empty(), scene_) * double(params.lightCount);
-    const auto subsets = [&](int32_t wanted, double points) {
-        const double least = rounds * points / kMostRounds;
-        return uint32_t(std::clamp(std::max(double(wanted), std::ceil(least)), 1.0,
-                                   double(std::max(params.walkCount, 1u))));
-    };
-    params.subsets = subsets(used_.subsets, 2 * double(used_.samples)); // with compensation
-    params.surfaceSubsets = subsets(used_.surfaceSubsets, 1);
+    params.samples = uint32_t(used_.samples);
+    const VplRounds rounds(inputs.media, !grids.empty(), scene_, params);
+    params.subsets = rounds.subsets(used_.subsets, 2 * double(used_.samples)); // with compensation
+    params.surfaceSubsets = rounds.subsets(used_.surfaceSubsets, 1);
     params.mapSide = maps_.empty() && points_.points.empty() ? 0 : uint32_t(used_.mapSide);
     setClamps(inputs, params);
     params.lost = used_.show == int32_t(gpu::kVplShowLost) ? 1 : 0;
@@ -309,7 +290,7 @@ VplGather VplTechnique::gather(const plugin::FrameInputs& inputs) const {
         params.compensation = gpu::kVplTraced;
     params.lightsOfScene = asPrinted() ? 0 : inputs.lights.lightCount;
     params.upToFreePath = asPrinted() ? 0 : 1;
-    params.samples = uint32_t(used_.samples);
+    gather.pointsATurn = rounds.pointsATurn();
     if (!grids.empty() && inputs.media.count > 0) {
         params.depthSide = uint32_t(used_.depthSide);
         params.gridsMinimum = vec4(vec3(grids.minimum), 0);

@@ -1,5 +1,6 @@
 // Light that media scatter to the eye: one ray for each pixel, or for squares of them. With MARCH_FILLS a third pass, after gi/shared/upsample.glsl, marches
-// the pixels that no ray fits. Passes: plugin/reduced_march.h. Whoever includes this defines mediaLight().
+// the pixels that no ray fits. With MARCH_TURNS mediaLight() may look at what it has returned before. Passes: plugin/reduced_march.h. Whoever includes this defines
+// mediaLight().
 #include "common/view.glsl"
 #include "media/nearest_rays.glsl"
 
@@ -10,7 +11,11 @@ uniform sampler2D depth;
 #ifdef MARCH_FILLS
 uniform sampler2D before; // with kMarchFill: the upsampled image; w: 0 where a pixel is open
 #endif
+#ifdef MARCH_TURNS
+layout(rgba32f) uniform image2D inScatter; // from turn to turn light comes to it
+#else
 layout(rgba32f) writeonly uniform image2D inScatter;
+#endif
 
 /// Nits that reach the ray's origin from up to `distance` metres. `pixel`: of the ray; `number`: of the ray among all marched rays.
 vec3 mediaLight(Ray ray, float distance, ivec2 pixel, uvec2 number);

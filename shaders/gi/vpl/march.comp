@@ -1,6 +1,7 @@
 // Light of virtual point lights that media scatter to the eye; also for pixels that upsampling leaves open.
 // COMPENSATION: kVplClamped, kVplClosedForm or kVplTraced.
 #define MARCH_FILLS
+#define MARCH_TURNS
 #include "gi/shared/march.glsl"
 #include "gi/vpl/scattered_light.glsl"
 
@@ -16,5 +17,7 @@ vec3 pathLightOf(ivec2 pixel, ivec2 size) {
 
 vec3 mediaLight(Ray ray, float distance, ivec2 pixel, uvec2 number) {
     marchedMedia = params.media;
-    return lightScatteredAlong(ray, distance, number) + pathLightOf(pixel, textureSize(depth, 0));
+    vec3 before = vpl.firstPoint == 0u ? vec3(0.0) : imageLoad(inScatter, ivec2(number)).rgb;
+    vec3 light = lightScatteredAlong(ray, distance, number, before);
+    return vpl.endPoint == kVplAllPoints ? light + pathLightOf(pixel, textureSize(depth, 0)) : light;
 }

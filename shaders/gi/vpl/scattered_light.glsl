@@ -90,48 +90,66 @@ float importanceOf(Segment s, vec3 before) {
     return meanOf(scatteringOf(s) * exp(-before) * oneMinusExpOverX(s.depth));
 }
 
+/// What the points along a ray are drawn with: one after the other well spread.
+struct PointNumbers {
+    uint walks;  // subset of the walks
+    float along; // the segment
+    vec4 near;   // of the compensating vertex: direction, medium, distance
+};
+
+void nextNumbers(inout PointNumbers numbers) {
+    ++numbers.walks;
+    numbers.along = fract(numbers.along + 0.61803399);
+    numbers.near = fract(numbers.near + vec4(0.85667488, 0.73389185, 0.62870672, 0.53859725)); // powers of the root of x⁵ = x + 1
+}
+
+const float kLeastImportance = 1e-34; // points over it are finite; what scatters less is not to be seen
+
 /// Nits that reach the ray's origin from up to `distance` metres: gathered at points that are drawn evenly in importance, once it is known how much
-/// there is.
-vec3 lightScatteredAlong(Ray ray, float distance, uvec2 pixel) {
-    vec3 sum = vec3(0.0);
+/// there is. Only the points of this turn, after `sum`, what earlier turns have found: so that a driver that ends loops after so many rounds ends none.
+vec3 lightScatteredAlong(Ray ray, float distance, uvec2 pixel, vec3 sum) {
     March march;
     if (!beginMarch(ray, distance, march)) return sum;
     March again = march;
     Segment s;
     float total = 0.0;
     while (nextSegment(ray, march, s)) total += importanceOf(s, march.before);
-    if (!(total > 0.0)) return sum;
+    if (!(total > kLeastImportance)) return sum;
 
-    uint number = uint(pixelNoise(pixel, 21u) * float(vpl.subsets));
-    // Along the segment; of the compensating vertex: class, distance; direction, medium.
+    PointNumbers numbers;
+    numbers.walks = uint(pixelNoise(pixel, 21u) * float(vpl.subsets)) + 1u;
     vec4 random = pixelRandom(pixel, 12u);
-    float noise = random.w;
-    vec4 u = pixelRandom(pixel, 15u);
+    numbers.along = random.w;
+    numbers.near = pixelRandom(pixel, 15u);
     uint other = uint(pixelRandom(pixel, 16u).x * float(vpl.subsets));
-    float passed = pixelNoise(pixel, 28u); // in units of a sample: one is taken wherever this reaches a whole number
-    float perSample = float(vpl.samples) / total;
-    // Sample by sample, so that invocations side by side gather together however their segments lie.
+    float passed = pixelNoise(pixel, 28u); // in units of a point: one is taken wherever this reaches a whole number
+    float perPoint = float(vpl.samples) / total;
+    // Point by point, so that invocations side by side gather together however their segments lie.
     march = again;
     float next = floor(passed) + 1.0;
     float expected = 0.0;
-    for (;;) {
+    for (uint point = 0u; point < vpl.endPoint; ++point) {
         bool more = true;
-        while (next > passed && more) {
-            more = nextSegment(ray, march, s);
-            if (more) {
-                expected = importanceOf(s, march.before) * perSample;
-                passed += expected;
+        while (more && (next > passed || point < vpl.firstPoint)) {
+            if (next > passed) {
+                more = nextSegment(ray, march, s);
+                if (more) {
+                    expected = importanceOf(s, march.before) * perPoint;
+                    passed += expected;
+                }
+            } else { // an earlier turn's
+                next += 1.0;
+                ++point;
+                nextNumbers(numbers);
             }
         }
         if (!more) break;
         next += 1.0;
-        ++number;
-        GatherPoint point = gatherBySegment(s, noise);
-        vec3 position = ray.origin + ray.direction * (s.start + s.size * point.fraction);
-        vec3 light = gatherAt(number, number + other, position, ray.direction, s, u);
-        sum += exp(-march.before) * point.weight * light / expected;
-        noise = fract(noise + 0.61803399);
-        u = fract(u + vec4(0.85667488, 0.73389185, 0.62870672, 0.53859725)); // powers of the root of x⁵ = x + 1: well spread in four dimensions
+        GatherPoint at = gatherBySegment(s, numbers.along);
+        vec3 position = ray.origin + ray.direction * (s.start + s.size * at.fraction);
+        vec3 light = gatherAt(numbers.walks, numbers.walks + other, position, ray.direction, s, numbers.near);
+        sum += exp(-march.before) * at.weight * light / expected;
+        nextNumbers(numbers);
     }
     return sum;
 }
