@@ -4,7 +4,6 @@
 #include <unordered_map>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include "core/check.h"
 #include "scene/gltf_model.h"
@@ -143,41 +142,38 @@ void skin(Mesh& mesh, const std::vector<vec4>& joints, const std::vector<vec4>& 
 } // namespace
 
 Result<std::vector<int>> GltfModel::readMesh(size_t index, const Shape& shape) {
-    const Json& json = file_.array("meshes")[index];
-    const Json& primitives = json.at("primitives");
+    const gltf::Mesh& mesh = file_.document().meshes[index];
     std::vector<int> meshes;
-    for (size_t i = 0; i < primitives.size(); ++i) {
+    for (size_t i = 0; i < mesh.primitives.size(); ++i) {
         const std::string pointer = fmt::format("/meshes/{}/primitives/{}", index, i);
-        if (auto read = readPrimitive(primitives[i], pointer, json.value("name", std::string()),
-                                      shape, meshes);
+        if (auto read = readPrimitive(mesh.primitives[i], pointer, mesh.name, shape, meshes);
             !read)
             return read.error();
     }
     return meshes;
 }
 
-Result<void> GltfModel::readPrimitive(const Json& json, const std::string& pointer,
+Result<void> GltfModel::readPrimitive(const gltf::Primitive& primitive, const std::string& pointer,
                                       const std::string& name, const Shape& shape,
                                       std::vector<int>& meshes) {
-    if (!json.at("attributes").contains("POSITION")) {
+    if (!primitive.attributes.contains("POSITION")) {
         file_.note(pointer + " has no positions and is left out");
         return {};
     }
-    auto source = readSource(json, pointer);
+    auto source = readSource(primitive, pointer);
     if (!source) return source.error();
-    if (auto morphed = addMorphTargets(json, pointer, shape.weights, *source); !morphed)
+    if (auto morphed = addMorphTargets(primitive, pointer, shape.weights, *source); !morphed)
         return morphed;
     const SharedFloats joints = source->joints, weights = source->weights;
     std::vector<uint32_t> from;
-    auto mesh = cutToIndices(json, pointer, *source);
+    auto mesh = cutToIndices(primitive.mode, pointer, *source);
     if (!mesh) return mesh.error();
     if (mesh->positions.empty()) return {}; // nothing to draw
     mesh->name = name;
-    if (const auto material = json.find("material"); material != json.end())
-        mesh->material = material->get<int>();
+    mesh->material = primitive.material;
     if (shape.joints && joints && weights) {
         // The attributes were cut to the used vertices in the same order as here.
-        std::vector<uint32_t> indices = makeList(json.value("mode", 4), source->indices);
+        std::vector<uint32_t> indices = makeList(primitive.mode, source->indices);
         from = compact(indices, source->vertexCount());
         skin(*mesh, gather<vec4>(joints, from, 0), gather<vec4>(weights, from, 0), *shape.joints);
     }
@@ -187,18 +183,18 @@ Result<void> GltfModel::readPrimitive(const Json& json, const std::string& point
     return {};
 }
 
-Result<PrimitiveSource> GltfModel::readSource(const Json& json, const std::string& pointer) {
+Result<PrimitiveSource> GltfModel::readSource(const gltf::Primitive& primitive,
+                                              const std::string& pointer) {
     PrimitiveSource source;
-    const auto extensions = json.find("extensions");
-    if (extensions != json.end() && extensions->contains("KHR_draco_mesh_compression"))
-        if (auto decoded = decodeDraco(file_, json, pointer, source); !decoded)
+    if (primitive.draco)
+        if (auto decoded = decodeDraco(file_, primitive, pointer, source); !decoded)
             return decoded.error();
-    const Json& attributes = json.at("attributes");
+    const gltf::Attributes& attributes = primitive.attributes;
     const auto read = [&](const std::string& name, std::string_view types,
                           SharedFloats& to) -> Result<void> {
         const auto accessor = attributes.find(name);
         if (to || accessor == attributes.end()) return {};
-        auto values = file_.floats(accessor->get<size_t>(), types);
+        auto values = file_.floats(size_t(accessor->second), types);
         if (!values) return values.error();
         to = *values;
         return {};
@@ -222,8 +218,8 @@ Result<PrimitiveSource> GltfModel::readSource(const Json& json, const std::strin
             return file_.at(pointer,
                             fmt::format("has {} positions, but {} elements of another attribute",
                                         count, data->count()));
-    if (const auto indices = json.find("indices"); indices != json.end() && !source.indexed) {
-        auto values = file_.indices(indices->get<size_t>());
+    if (primitive.indices != kNone && !source.indexed) {
+        auto values = file_.indices(size_t(primitive.indices));
         if (!values) return values.error();
         source.indices = std::move(*values);
         source.indexed = true;
@@ -240,11 +236,12 @@ Result<PrimitiveSource> GltfModel::readSource(const Json& json, const std::strin
     return source;
 }
 
-Result<void> GltfModel::addMorphTargets(const Json& json, const std::string& pointer,
+Result<void> GltfModel::addMorphTargets(const gltf::Primitive& primitive,
+                                        const std::string& pointer,
                                         const std::vector<double>& weights,
                                         PrimitiveSource& source) {
-    const auto targets = json.find("targets");
-    if (targets == json.end()) return {};
+    const std::vector<gltf::Attributes>& targets = primitive.targets;
+    if (targets.empty()) return {};
     file_.note("morph targets are shown as their default weights have them");
     const std::pair<const char*, SharedFloats*> kinds[] = {{"POSITION", &source.positions},
                                                            {"NORMAL", &source.normals},
@@ -252,10 +249,10 @@ Result<void> GltfModel::addMorphTargets(const Json& json, const std::string& poi
     for (const auto& [name, data] : kinds) {
         if (!*data) continue;
         std::shared_ptr<FloatData> moved;
-        for (size_t t = 0; t < std::min(targets->size(), weights.size()); ++t) {
-            const auto accessor = (*targets)[t].find(name);
-            if (accessor == (*targets)[t].end() || weights[t] == 0) continue;
-            const auto offsets = file_.floats(accessor->get<size_t>(), "VEC3");
+        for (size_t t = 0; t < std::min(targets.size(), weights.size()); ++t) {
+            const auto accessor = targets[t].find(name);
+            if (accessor == targets[t].end() || weights[t] == 0) continue;
+            const auto offsets = file_.floats(size_t(accessor->second), "VEC3");
             if (!offsets) return offsets.error();
             if ((*offsets)->count() != (*data)->count())
                 return file_.at(fmt::format("{}/targets/{}/{}", pointer, t, name),
@@ -275,9 +272,8 @@ Result<void> GltfModel::addMorphTargets(const Json& json, const std::string& poi
     return {};
 }
 
-Result<Mesh> GltfModel::cutToIndices(const Json& json, const std::string& pointer,
+Result<Mesh> GltfModel::cutToIndices(int mode, const std::string& pointer,
                                      const PrimitiveSource& source) {
-    const int mode = json.value("mode", 4);
     Mesh mesh;
     mesh.topology = topologyOf(mode);
     // A strip makes up to three indices out of one; what they keep of the attributes is at most as much.

@@ -27,31 +27,31 @@ constexpr char kRules[] = R"RULES({
   "extensionsUsed": {"type": "array", "maxItems": 1000, "items": {"type": "string"}},
   "extensionsRequired": {"type": "array", "maxItems": 1000, "items": {"type": "string"}},
   "scene": {"$ref": "#/$defs/index"},
-  "scenes": {"type": "array", "items": {"type": "object", "properties": {"name": {"type": "string"}, "nodes": {"$ref": "#/$defs/indices"}}}},
+  "scenes": {"type": "array", "maxItems": 100000, "items": {"type": "object", "properties": {"name": {"type": "string"}, "nodes": {"$ref": "#/$defs/indices"}}}},
   "nodes": {"type": "array", "maxItems": 1000000, "items": {"$ref": "#/$defs/node"}},
-  "meshes": {"type": "array", "items": {"type": "object", "required": ["primitives"], "properties": {
+  "meshes": {"type": "array", "maxItems": 1000000, "items": {"type": "object", "required": ["primitives"], "properties": {
     "name": {"type": "string"}, "weights": {"$ref": "#/$defs/numbers"},
     "primitives": {"type": "array", "items": {"$ref": "#/$defs/primitive"}}}}},
-  "accessors": {"type": "array", "items": {"$ref": "#/$defs/accessor"}},
-  "bufferViews": {"type": "array", "items": {"$ref": "#/$defs/bufferView"}},
+  "accessors": {"type": "array", "maxItems": 1000000, "items": {"$ref": "#/$defs/accessor"}},
+  "bufferViews": {"type": "array", "maxItems": 1000000, "items": {"$ref": "#/$defs/bufferView"}},
   "buffers": {"type": "array", "maxItems": 100000, "items": {"type": "object", "required": ["byteLength"], "properties": {
     "uri": {"type": "string"}, "byteLength": {"$ref": "#/$defs/bytes"}}}},
-  "images": {"type": "array", "items": {"type": "object", "properties": {
+  "images": {"type": "array", "maxItems": 100000, "items": {"type": "object", "properties": {
     "name": {"type": "string"}, "uri": {"type": "string"}, "mimeType": {"type": "string"}, "bufferView": {"$ref": "#/$defs/index"}}}},
-  "textures": {"type": "array", "items": {"type": "object", "properties": {
+  "textures": {"type": "array", "maxItems": 100000, "items": {"type": "object", "properties": {
     "sampler": {"$ref": "#/$defs/index"}, "source": {"$ref": "#/$defs/index"},
     "extensions": {"type": "object", "properties": {"EXT_texture_webp": {"type": "object", "required": ["source"],
       "properties": {"source": {"$ref": "#/$defs/index"}}}}}}}},
-  "samplers": {"type": "array", "items": {"type": "object", "properties": {
+  "samplers": {"type": "array", "maxItems": 100000, "items": {"type": "object", "properties": {
     "magFilter": {"enum": [9728, 9729]}, "minFilter": {"enum": [9728, 9729, 9984, 9985, 9986, 9987]},
     "wrapS": {"enum": [10497, 33071, 33648]}, "wrapT": {"enum": [10497, 33071, 33648]}}}},
-  "materials": {"type": "array", "items": {"$ref": "#/$defs/material"}},
-  "cameras": {"type": "array", "items": {"$ref": "#/$defs/camera"}},
-  "skins": {"type": "array", "items": {"type": "object", "required": ["joints"], "properties": {
+  "materials": {"type": "array", "maxItems": 100000, "items": {"$ref": "#/$defs/material"}},
+  "cameras": {"type": "array", "maxItems": 100000, "items": {"$ref": "#/$defs/camera"}},
+  "skins": {"type": "array", "maxItems": 100000, "items": {"type": "object", "required": ["joints"], "properties": {
     "inverseBindMatrices": {"$ref": "#/$defs/index"}, "joints": {"$ref": "#/$defs/indices"}}}},
-  "animations": {"type": "array"},
+  "animations": {"type": "array", "maxItems": 100000},
   "extensions": {"type": "object", "properties": {"KHR_lights_punctual": {"type": "object", "required": ["lights"], "properties": {
-    "lights": {"type": "array", "items": {"$ref": "#/$defs/light"}}}}}}
+    "lights": {"type": "array", "maxItems": 100000, "items": {"$ref": "#/$defs/light"}}}}}}
  },
  "$defs": {
   "index": {"type": "integer", "minimum": 0, "maximum": 2147483647},
@@ -89,11 +89,11 @@ constexpr char kRules[] = R"RULES({
     "normalized": {"type": "boolean"}, "count": {"$ref": "#/$defs/count"},
     "type": {"enum": ["SCALAR", "VEC2", "VEC3", "VEC4", "MAT2", "MAT3", "MAT4"]},
     "sparse": {"type": "object", "required": ["count", "indices", "values"], "properties": {
-      "count": {"$ref": "#/$defs/count"},
+      "count": {"$ref": "#/$defs/index"},
       "indices": {"type": "object", "required": ["bufferView", "componentType"], "properties": {
-        "bufferView": {"$ref": "#/$defs/index"}, "byteOffset": {"$ref": "#/$defs/bytes"}, "componentType": {"enum": [5121, 5123, 5125]}}},
+        "bufferView": {"$ref": "#/$defs/index"}, "byteOffset": {"$ref": "#/$defs/index"}, "componentType": {"enum": [5121, 5123, 5125]}}},
       "values": {"type": "object", "required": ["bufferView"], "properties": {
-        "bufferView": {"$ref": "#/$defs/index"}, "byteOffset": {"$ref": "#/$defs/bytes"}}}}}}},
+        "bufferView": {"$ref": "#/$defs/index"}, "byteOffset": {"$ref": "#/$defs/index"}}}}}}},
   "bufferView": {"type": "object", "required": ["buffer", "byteLength"], "properties": {
     "buffer": {"$ref": "#/$defs/index"}, "byteOffset": {"$ref": "#/$defs/bytes"}, "byteLength": {"$ref": "#/$defs/bytes"},
     "byteStride": {"type": "integer", "minimum": 1, "maximum": 256},
@@ -131,6 +131,11 @@ constexpr char kRules[] = R"RULES({
       "innerConeAngle": {"type": "number", "minimum": 0, "maximum": 1.5707964}, "outerConeAngle": {"type": "number", "minimum": 0, "maximum": 1.5707964}}}}}
  }
 })RULES";
+
+const Json& rules() {
+    static const Json parsed = Json::parse(kRules);
+    return parsed;
+}
 
 struct Reference {
     std::string_view place;  // "*": every element or member
@@ -208,13 +213,16 @@ Result<void> checkReference(const Json& here, std::string_view place, const std:
 } // namespace
 
 Result<void> checkGltfRules(const Json& gltf) {
-    static const Json rules = Json::parse(kRules);
-    if (auto valid = validateJson(gltf, rules); !valid) return valid;
+    if (auto valid = validateJson(gltf, rules()); !valid) return valid;
     for (const Reference& reference : kReferences)
         if (auto valid = checkReference(gltf, reference.place, "", sizeOf(gltf, reference.target),
                                         reference.target);
             !valid)
             return valid;
+    const Json cameras = gltf.value("cameras", Json::array());
+    for (size_t i = 0; i < cameras.size(); ++i)
+        if (const auto type = cameras[i].at("type").get<std::string>(); !cameras[i].contains(type))
+            return Error{fmt::format("/cameras/{} is {} but lacks the key '{}'", i, type, type)};
     const Json& asset = gltf.at("asset");
     if (const std::string version = asset.at("version").get<std::string>();
         !version.starts_with("2."))
@@ -226,6 +234,10 @@ Result<void> checkGltfRules(const Json& gltf) {
     return {};
 }
 
+void keepWhatRulesJudge(Json& gltf) {
+    keepJudged(gltf, rules());
+}
+
 Result<void> checkGltfExtensions(const Json& gltf, std::vector<std::string>& notes) {
     const auto understood = [](const std::string& name) {
         return std::find(kUnderstood.begin(), kUnderstood.end(), name) != kUnderstood.end();
@@ -234,6 +246,10 @@ Result<void> checkGltfExtensions(const Json& gltf, std::vector<std::string>& not
         if (!understood(name.get<std::string>()))
             return Error{fmt::format("/extensionsRequired names '{}', which is not supported",
                                      name.get<std::string>().substr(0, 80))};
+    for (const Json& material : gltf.value("materials", Json::array()))
+        for (const char* key : {"specularTexture", "specularColorFactor", "specularColorTexture"})
+            if (material.contains(Json::json_pointer("/extensions/KHR_materials_specular") / key))
+                notes.push_back(fmt::format("{} of KHR_materials_specular is ignored", key));
     for (const Json& name : gltf.value("extensionsUsed", Json::array()))
         if (!understood(name.get<std::string>()))
             notes.push_back(fmt::format("the extension {} is not supported and ignored",

@@ -11,6 +11,10 @@ namespace tyndall {
 /// extensions) are not judged.
 Result<void> checkGltfRules(const Json& gltf);
 
+/// Erases what is not read, after the rules have been passed: extras, unknown extensions, animations' members. What is left is small in
+/// memory for each byte of the file, and no deeper than the rules are.
+void keepWhatRulesJudge(Json& gltf);
+
 /// Error where `extensionsRequired` names one that is not understood; in `notes` a sentence for each that is only used.
 Result<void> checkGltfExtensions(const Json& gltf, std::vector<std::string>& notes);
 

@@ -53,7 +53,41 @@ public:
         return {};
     }
 
+    /// See keepJudged.
+    void keep(Json& value, const Json& schemaHere) const {
+        const Json& schema = resolved(schemaHere);
+        if (value.is_number()) return writeNumber(value, schema);
+        if (value.is_array()) {
+            const auto items = schema.find("items");
+            for (Json& item : value) {
+                if (items == schema.end())
+                    item = Json::object();
+                else
+                    keep(item, *items);
+            }
+        }
+        if (!value.is_object()) return;
+        const Json none = Json::object();
+        const auto found = schema.find("properties"), others = schema.find("additionalProperties");
+        const Json& properties = found == schema.end() ? none : *found;
+        Json kept = Json::object();
+        for (auto& [key, member] : value.items()) {
+            const auto property = properties.find(key);
+            if (property == properties.end() && others == schema.end()) continue;
+            keep(member, property == properties.end() ? *others : *property);
+            kept[key] = std::move(member);
+        }
+        value = std::move(kept);
+    }
+
 private:
+    static void writeNumber(Json& value, const Json& schema) {
+        if (schema.value("type", std::string()) == "number")
+            value = value.get<double>();
+        else if (value.get<double>() >= 0)
+            value = value.get<uint64_t>();
+    }
+
     static Error wrong(const std::string& pointer, const std::string& sentence) {
         return Error{(pointer.empty() ? std::string("the file") : pointer) + " " + sentence};
     }
@@ -196,6 +230,10 @@ private:
 
 Result<void> validateJson(const Json& value, const Json& schema) {
     return Validator(schema).check(value, schema, "");
+}
+
+void keepJudged(Json& value, const Json& schema) {
+    Validator(schema).keep(value, schema);
 }
 
 const Json& sceneFileSchema() {

@@ -13,6 +13,10 @@ namespace tyndall {
 /// Error: "/nodes/2/light: unknown key 'intensty'; did you mean 'intensity'?", without the file's name.
 Result<void> validateJson(const Json& value, const Json& schema);
 
+/// Of a valid value, what the schema speaks of: other members of objects are erased, elements of arrays without `items` emptied, integers
+/// written as integers (4.0 → 4) and other numbers as floating-point ones. Knows no anyOf.
+void keepJudged(Json& value, const Json& schema);
+
 /// docs/scene.schema.json, which is built into the program.
 const Json& sceneFileSchema();
 
