@@ -30,25 +30,29 @@ int hexDigit(char c) {
     return -1;
 }
 
-/// A relative path out of a URI. Errors: a scheme, an absolute path, a bad escape, a control character.
-Result<std::string> pathOfUri(const std::string& uri) {
-    std::string path;
+/// "%20" as ' '. A '%' without two hexadecimal digits stays: exporters write names as they are.
+std::string unescaped(const std::string& uri) {
+    std::string text;
     for (size_t i = 0; i < uri.size(); ++i) {
-        char c = uri[i];
-        if (c == '%') {
-            if (i + 2 >= uri.size() || hexDigit(uri[i + 1]) < 0 || hexDigit(uri[i + 2]) < 0)
-                return Error{"holds a '%' without two hexadecimal digits"};
-            c = char(hexDigit(uri[i + 1]) * 16 + hexDigit(uri[i + 2]));
-            i += 2;
-        }
-        if (static_cast<unsigned char>(c) < 32) return Error{"holds a control character"};
-        path += c == '\\' ? '/' : c;
+        const bool escape = uri[i] == '%' && i + 2 < uri.size() && hexDigit(uri[i + 1]) >= 0 &&
+                            hexDigit(uri[i + 2]) >= 0;
+        text += escape ? char(hexDigit(uri[i + 1]) * 16 + hexDigit(uri[i + 2])) : uri[i];
+        if (escape) i += 2;
     }
-    const size_t colon = path.find(':'), slash = path.find('/');
-    if (path.empty()) return Error{"is empty"};
+    return text;
+}
+
+/// Of an unescaped URI, its dots resolved (RFC 3986, section 5.2.4). Errors: a scheme, an absolute path, a control character.
+Result<fs::path> relativePath(std::string text) {
+    for (char& c : text) {
+        if (static_cast<unsigned char>(c) < 32) return Error{"holds a control character"};
+        if (c == '\\') c = '/';
+    }
+    const size_t colon = text.find(':'), slash = text.find('/');
+    if (text.empty()) return Error{"is empty"};
     if (slash == 0 || (colon != std::string::npos && (slash == std::string::npos || colon < slash)))
         return Error{"is not relative, and only data URIs and relative paths are read"};
-    return path;
+    return fs::path(text).lexically_normal();
 }
 
 } // namespace
@@ -87,11 +91,10 @@ Result<std::string_view> GltfFile::openContainer(std::string_view bytes) {
         const uint32_t type = readWord(bytes, offset + 4);
         offset += 8;
         if (size > length - offset)
-            return Error{fmt::format("a chunk at byte {} reaches beyond the end of the file",
-                                     offset - 8)};
+            return Error{
+                fmt::format("a chunk at byte {} reaches beyond the end of the file", offset - 8)};
         const std::string_view chunk = bytes.substr(offset, size);
-        if (!text && type != kJsonChunk)
-            return Error{"the first chunk of a GLB file must be JSON"};
+        if (!text && type != kJsonChunk) return Error{"the first chunk of a GLB file must be JSON"};
         if (!text)
             text = chunk;
         else if (type == kBinaryChunk && !binaryChunk_)
@@ -112,7 +115,7 @@ Result<void> GltfFile::readDocument(std::string_view text) {
     auto json = parseJson(text);
     if (!json) return json.error();
     std::vector<std::string> sentences;
-    if (auto valid = checkGltfRules(*json); !valid) return valid;
+    if (auto valid = checkGltfRules(*json, sentences); !valid) return valid;
     if (auto valid = checkGltfExtensions(*json, sentences); !valid) return valid;
     for (const std::string& sentence : sentences) note(sentence);
     auto document = gltf::parse(std::move(*json));
@@ -149,10 +152,12 @@ Result<SharedBytes> GltfFile::uriBytes(const std::string& uri, const std::string
         return std::make_shared<const std::string>(std::move(*bytes));
     }
     if (const auto found = files_.find(uri); found != files_.end()) return found->second;
-    const auto relative = pathOfUri(uri);
+    const auto relative = relativePath(unescaped(uri));
     if (!relative) return at(pointer + "/uri", relative.message());
-    const fs::path file = path_.parent_path() / *relative;
+    fs::path file = path_.parent_path() / *relative;
     std::error_code problem;
+    if (!fs::is_regular_file(file, problem)) // a name that was written without escaping its '%'
+        if (const auto literal = relativePath(uri)) file = path_.parent_path() / *literal;
     if (!fs::is_regular_file(file, problem))
         return at(pointer + "/uri",
                   fmt::format("is '{}', but there is no such file", uri.substr(0, 200)));

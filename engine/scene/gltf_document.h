@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "core/result.h"
-#include "scene/json_text.h"
+#include "scene/json_parse.h"
 #include "scene/scene.h"
 
 namespace tyndall::gltf {

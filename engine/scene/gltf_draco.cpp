@@ -122,22 +122,8 @@ Result<void> decodeDraco(GltfFile& file, const gltf::Primitive& primitive,
                                        int(attribute->num_components()), components));
         if (auto fits = file.charge(size_t(mesh->num_points()) * size_t(components), here); !fits)
             return fits;
-        const SharedFloats data = readAttribute(*mesh, *attribute, described);
-        if (name == "POSITION")
-            source.positions = data;
-        else if (name == "NORMAL")
-            source.normals = data;
-        else if (name == "TANGENT")
-            source.tangents = data;
-        else if (name == "COLOR_0")
-            source.colors = data;
-        else if (name == "JOINTS_0")
-            source.joints = data;
-        else if (name == "WEIGHTS_0")
-            source.weights = data;
-        else
-            for (int set = 0; set < kMaxUvSets; ++set)
-                if (name == fmt::format("TEXCOORD_{}", set)) source.uvs[size_t(set)] = data;
+        if (SharedFloats* place = source.place(name))
+            *place = readAttribute(*mesh, *attribute, described);
     }
     return {};
 }

@@ -38,8 +38,9 @@ Result<void> GltfModel::readTextureRef(TextureRef& reference, const std::string&
     if (!texture) return texture.error();
     reference.texture = *texture;
     if (reference.uvSet < kMaxUvSets) return {};
-    file_.note(fmt::format("{} uses TEXCOORD_{}, but only {} sets are read; the texture is left out",
-                           pointer, reference.uvSet, kMaxUvSets));
+    file_.note(
+        fmt::format("{} uses TEXCOORD_{}, but only {} sets are read; the texture is left out",
+                    pointer, reference.uvSet, kMaxUvSets));
     reference = {};
     return {};
 }

@@ -14,10 +14,15 @@ namespace tyndall {
 struct PrimitiveSource {
     SharedFloats positions, normals, tangents, colors;
     std::array<SharedFloats, kMaxUvSets> uvs;
-    SharedFloats joints, weights; // JOINTS_0, WEIGHTS_0
+    struct Influences {
+        SharedFloats joints, weights; // four a vertex
+    };
+    std::map<int, Influences> influences; // JOINTS_n and WEIGHTS_n by n
     std::vector<uint32_t>
         indices; // as in the file, before lists are made; empty: all vertices in order
     bool indexed = false;
+    /// Where the attribute `name` is kept; null where nothing here uses it.
+    SharedFloats* place(std::string_view name);
     [[nodiscard]] size_t vertexCount() const { return positions ? positions->count() : 0; }
 };
 

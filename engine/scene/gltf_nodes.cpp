@@ -78,11 +78,6 @@ Result<Node> GltfModel::readNode(size_t index) {
     Node node;
     node.name = written.name;
     node.matrix = written.matrix;
-    if (const auto& m = node.matrix;
-        m && ((*m)[0][3] != 0 || (*m)[1][3] != 0 || (*m)[2][3] != 0 || (*m)[3][3] != 1))
-        return file_.at(
-            pointer + "/matrix",
-            "is not affine: its last row (elements 3, 7, 11 and 15) must be 0, 0, 0, 1");
     node.translation = written.translation;
     node.scale = written.scale;
     node.rotation = unitOrIdentity(written.rotation);
@@ -148,8 +143,8 @@ Result<void> GltfModel::attachMeshes() {
         const gltf::Node& node = nodes[order_[i].node];
         if (node.mesh == kNone) continue;
         const auto index = size_t(node.mesh);
-        if (auto goOn = file_.progress(0.3f + 0.6f * float(i) / float(order_.size()),
-                                       meshes[index].name);
+        if (auto goOn =
+                file_.progress(0.3f + 0.6f * float(i) / float(order_.size()), meshes[index].name);
             !goOn)
             return goOn;
         const bool skinned = node.skin != kNone, ownWeights = !node.weights.empty();

@@ -26,7 +26,7 @@ using tinygltf::Value;
 struct Withheld {
     std::vector<Buffer> buffers;
     std::vector<Image> images;
-    std::vector<uint64_t> strides;        // by buffer view
+    std::vector<uint64_t> strides;         // by buffer view
     std::vector<std::vector<int>> indices; // by mesh and primitive
 };
 
@@ -158,8 +158,12 @@ BufferView viewOf(const tinygltf::BufferView& from, uint64_t stride) {
     if (const Value& meshopt = extension(from.extensions, "EXT_meshopt_compression");
         meshopt.IsObject()) {
         const auto number = [&](const char* key) { return uint64_t(numberOr(meshopt, key, 0)); };
-        view.packed = PackedView{number("buffer"),     number("byteOffset"), number("byteLength"),
-                                 number("byteStride"), number("count"),      {},
+        view.packed = PackedView{number("buffer"),
+                                 number("byteOffset"),
+                                 number("byteLength"),
+                                 number("byteStride"),
+                                 number("count"),
+                                 {},
                                  "NONE"};
         view.packed->mode = member(meshopt, "mode").Get<std::string>();
         if (const Value& filter = member(meshopt, "filter"); filter.IsString())
@@ -182,7 +186,7 @@ std::string_view typeName(int type) {
 }
 
 Accessor accessorOf(const tinygltf::Accessor& from) {
-    Accessor accessor{from.bufferView,      from.byteOffset, from.count, from.componentType,
+    Accessor accessor{from.bufferView,     from.byteOffset, from.count, from.componentType,
                       typeName(from.type), from.normalized, {}};
     if (from.sparse.isSparse)
         accessor.sparse = Sparse{uint64_t(from.sparse.count),
@@ -198,8 +202,12 @@ Mesh meshOf(const tinygltf::Mesh& from, const std::vector<int>& indices) {
     Mesh mesh{from.name, from.weights, {}};
     for (size_t i = 0; i < from.primitives.size(); ++i) {
         const tinygltf::Primitive& primitive = from.primitives[i];
-        mesh.primitives.push_back({primitive.attributes, primitive.targets, indices[i],
-                                   primitive.material, primitive.mode, {}});
+        mesh.primitives.push_back({primitive.attributes,
+                                   primitive.targets,
+                                   indices[i],
+                                   primitive.material,
+                                   primitive.mode,
+                                   {}});
         if (const Value& draco = extension(primitive.extensions, "KHR_draco_mesh_compression");
             draco.IsObject())
             mesh.primitives.back().draco =

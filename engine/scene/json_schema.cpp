@@ -1,5 +1,6 @@
 #include "scene/json_schema.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -51,6 +52,29 @@ public:
         if (value.is_array()) return checkArray(value, schema, pointer);
         if (value.is_object()) return checkObject(value, schema, pointer);
         return {};
+    }
+
+    /// See roundIntoLimits.
+    void round(Json& value, const Json& schemaHere, const std::string& pointer,
+               Rounded& rounded) const {
+        const Json& schema = resolved(schemaHere);
+        if (value.is_number()) {
+            const double tolerance = schema.value("tolerance", 0.0), number = value.get<double>();
+            const double limited = std::clamp(number, schema.value("minimum", number),
+                                              schema.value("maximum", number));
+            if (limited == number || std::abs(limited - number) > tolerance) return;
+            if (rounded.count++ == 0) rounded.first = pointer + " is " + value.dump();
+            value = limited;
+        } else if (const auto items = schema.find("items");
+                   value.is_array() && items != schema.end()) {
+            for (size_t i = 0; i < value.size(); ++i)
+                round(value[i], *items, fmt::format("{}/{}", pointer, i), rounded);
+        } else if (const auto properties = schema.find("properties");
+                   value.is_object() && properties != schema.end()) {
+            for (auto& [key, member] : value.items())
+                if (const auto property = properties->find(key); property != properties->end())
+                    round(member, *property, pointer + "/" + key, rounded);
+        }
     }
 
     /// See keepJudged.
@@ -232,9 +256,13 @@ Result<void> validateJson(const Json& value, const Json& schema) {
     return Validator(schema).check(value, schema, "");
 }
 
-void keepJudged(Json& value, const Json& schema) {
-    Validator(schema).keep(value, schema);
+Rounded roundIntoLimits(Json& value, const Json& schema) {
+    Rounded rounded;
+    Validator(schema).round(value, schema, "", rounded);
+    return rounded;
 }
+
+void keepJudged(Json& value, const Json& schema) { Validator(schema).keep(value, schema); }
 
 const Json& sceneFileSchema() {
     static const Json schema = Json::parse(kSceneSchemaText);

@@ -134,9 +134,9 @@ TEST(GltfHostile, WhatTinygltfRefusesIsLoadedWhereItIsSound) {
             "nodes": [{"extensions": {"KHR_lights_punctual": {"light": 0.0}}}])",
          R"("extras": {"a": [null, 1e300, {"b": {}}]}, "extensions": {"VENDOR_x": {"y": [[[[1]]]]}})"}) {
         SCOPED_TRACE(keys);
-        ASSERT_TRUE(writeFileAtomically(path, R"({"asset": {"version": "2.0"}, )" +
-                                                  std::string(keys) + "}")
-                        .ok());
+        ASSERT_TRUE(
+            writeFileAtomically(path, R"({"asset": {"version": "2.0"}, )" + std::string(keys) + "}")
+                .ok());
         const auto loaded = loadScene(path);
         EXPECT_TRUE(loaded.ok()) << loaded.message();
     }
