@@ -115,6 +115,7 @@ struct Document {
     std::vector<Image> images;
     std::vector<Camera> cameras;
     std::vector<Light> lights; // KHR_lights_punctual
+    std::vector<std::string> extensions; // used ones
     size_t animations = 0;
 };
 

@@ -21,7 +21,8 @@ namespace tyndall {
 /// Nodes come parents first; roots have no parent; activeCamera is the first node with a camera.
 struct GltfScene {
     Scene scene;
-    std::vector<std::string> notes; // each names the file
+    std::vector<std::string> extensions; // that the file uses
+    std::vector<std::string> notes;      // each names the file
 };
 
 /// The file is checked in full before any of it is used: types, ranges, references, cycles, sizes. Errors name the file
