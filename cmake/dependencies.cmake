@@ -9,6 +9,7 @@ find_package(TBB REQUIRED)
 pkg_check_modules(OPENEXR REQUIRED IMPORTED_TARGET OpenEXR) # its CMake file warns about a Python module
 find_package(draco REQUIRED)
 find_package(meshoptimizer REQUIRED)
+pkg_check_modules(TINYGLTF REQUIRED IMPORTED_TARGET tinygltf)
 pkg_check_modules(WEBP REQUIRED IMPORTED_TARGET libwebp)
 pkg_check_modules(EGL REQUIRED IMPORTED_TARGET egl)
 find_package(ZLIB REQUIRED)

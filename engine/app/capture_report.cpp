@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/json_text.h"
+#include "core/json_writer.h"
 
 namespace tyndall {
 namespace {

@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 
 #include "core/display_metrics.h"
-#include "core/json_text.h"
+#include "core/json_writer.h"
 
 namespace tyndall {
 namespace {

@@ -3,10 +3,8 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
-#include <cstring>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include "core/image.h"
 #include "core/image_metrics.h"
@@ -100,29 +98,14 @@ Result<std::string> describeHdr(const fs::path& path) {
 
 // Scenes
 
-/// The JSON of a .gltf, or of a .glb's first chunk (glTF 2.0, 4.4: a 12-byte header, then length, type, data).
-std::string_view gltfJson(std::string_view content) {
-    constexpr size_t kHeader = 12, kChunkHeader = 8;
-    if (!content.starts_with("glTF") || content.size() < kHeader + kChunkHeader) return content;
-    uint32_t length = 0;
-    std::memcpy(&length, content.data() + kHeader, sizeof length);
-    return content.substr(kHeader + kChunkHeader, length);
-}
-
 /// The extensions that a glTF file uses. The loader has a note for each that it ignores.
-std::string extensionLines(const fs::path& path, const std::vector<std::string>& notes) {
-    const Result<std::string> content = readFile(path);
-    if (!content.ok()) return {};
-    const nlohmann::json json = nlohmann::json::parse(gltfJson(*content), nullptr, false);
-    const auto used = json.is_object() ? json.find("extensionsUsed") : json.end();
-    if (used == json.end() || !used->is_array()) return {};
+std::string extensionLines(const LoadedScene& loaded) {
     std::string text;
-    for (const nlohmann::json& name : *used) {
-        if (!name.is_string()) continue;
-        const auto extension = name.get<std::string>();
-        const bool ignored = std::any_of(notes.begin(), notes.end(), [&](const std::string& note) {
-            return note.find(extension) != std::string::npos;
-        });
+    for (const std::string& extension : loaded.extensions) {
+        const bool ignored =
+            std::any_of(loaded.notes.begin(), loaded.notes.end(), [&](const std::string& note) {
+                return note.find(extension) != std::string::npos;
+            });
         text += fmt::format("extension {}: {}\n", extension, ignored ? "ignored" : "understood");
     }
     return text;
@@ -211,7 +194,7 @@ Result<std::string> describeScene(const fs::path& path, const std::string& exten
     std::string text =
         fmt::format("{}: {}\n", path.string(), extension == ".json" ? "a scene file" : "glTF 2.0");
     text += sceneLines(loaded->scene);
-    if (extension == ".gltf" || extension == ".glb") text += extensionLines(path, loaded->notes);
+    if (extension == ".gltf" || extension == ".glb") text += extensionLines(*loaded);
     for (const std::string& supplied : loaded->supplied) text += "supplied: " + supplied + "\n";
     for (const std::string& note : loaded->notes) text += "note: " + note + "\n";
     return text;

@@ -1,5 +1,6 @@
 // Radiance RGBE pictures ("Real Pixels", Ward, Graphics Gems II, 1991; the file format of the Radiance reference manual),
-// decoded strictly: a file that ends early or runs over a scan line is refused, not padded with black.
+// decoded strictly: a file that ends early or runs over a scan line is refused, not padded with black. (stb_image pads it,
+// takes the repeats of files from before 1991 for dark pixels, and does not know EXPOSURE.)
 
 #include "core/image.h"
 

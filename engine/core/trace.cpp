@@ -3,7 +3,7 @@
 #include <unistd.h>
 
 #include "core/check.h"
-#include "core/json_text.h"
+#include "core/json_writer.h"
 
 namespace tyndall {
 

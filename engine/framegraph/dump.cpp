@@ -4,6 +4,8 @@
 
 #include <iterator>
 
+#include "core/json_writer.h"
+
 namespace tyndall::fg {
 namespace {
 
@@ -27,20 +29,6 @@ std::string lifetime(const CompiledGraph& graph, const CompiledResource& resourc
     if (resource.firstPass == kNoIndex) return resource.used ? "kept" : "unused";
     if (resource.lastPass >= graph.passes.size()) return fmt::format("{}–end", resource.firstPass);
     return fmt::format("{}–{}", resource.firstPass, resource.lastPass);
-}
-
-/// Quotes, backslashes and control characters escaped, as JSON and dot both want them.
-std::string quoted(std::string_view text) {
-    std::string result = "\"";
-    for (const char c : text) {
-        if (c == '"' || c == '\\')
-            append(result, "\\{}", c);
-        else if (static_cast<unsigned char>(c) < 0x20)
-            append(result, "\\u{:04x}", static_cast<unsigned char>(c));
-        else
-            result += c;
-    }
-    return result + "\"";
 }
 
 std::string dumpText(const CompiledGraph& graph) {
@@ -77,17 +65,13 @@ std::string dumpDot(const CompiledGraph& graph) {
         const bool ran = pass.status == PassStatus::Ran;
         std::string label(pass.name);
         if (!ran) append(label, "\n{}: {}", statusName(pass.status), pass.reason);
-        std::string escaped = quoted(label);
-        for (size_t at = escaped.find("\\u000a"); at != std::string::npos;
-             at = escaped.find("\\u000a"))
-            escaped.replace(at, 6, "\\n");
         append(text, "    pass{} [shape=box, style=\"{}\", label={}];\n", i,
-               ran ? "filled" : "dashed", escaped);
+               ran ? "filled" : "dashed", jsonString(label));
     }
     for (size_t i = 1; i < graph.resources.size(); ++i) {
         const CompiledResource& resource = graph.resources[i];
         append(text, "    resource{} [shape=ellipse{}, label={}];\n", i,
-               resource.isOutput ? ", peripheries=2" : "", quoted(resource.name));
+               resource.isOutput ? ", peripheries=2" : "", jsonString(resource.name));
     }
     for (size_t i = 0; i < graph.passes.size(); ++i)
         for (const ResourceUse& use : graph.usesOf(graph.passes[i])) {
@@ -99,53 +83,51 @@ std::string dumpDot(const CompiledGraph& graph) {
     return text + "}\n";
 }
 
-void appendPassJson(std::string& text, const CompiledGraph& graph, const CompiledPass& pass) {
-    append(text,
-           "    {{\"name\": {}, \"status\": \"{}\", \"reason\": {}, \"barriers\": {}, \"uses\": [",
-           quoted(pass.name), statusName(pass.status), quoted(pass.reason),
-           quoted(barrierNames(pass.barriers)));
-    const char* separator = "";
+void writePass(JsonWriter& json, const CompiledGraph& graph, const CompiledPass& pass) {
+    json.compact()
+        .beginObject()
+        .member("name", pass.name)
+        .member("status", statusName(pass.status));
+    json.member("reason", pass.reason).member("barriers", barrierNames(pass.barriers));
+    json.key("uses").beginArray();
     for (const ResourceUse& use : graph.usesOf(pass)) {
-        append(
-            text,
-            "{}{{\"resource\": {}, \"name\": {}, \"version\": {}, \"access\": \"{}\", \"write\": {}}}",
-            separator, use.resource - 1, quoted(graph.resources[use.resource].name), use.version,
-            accessName(use.access), isWrite(use.access));
-        separator = ", ";
+        json.beginObject().member("resource", use.resource - 1);
+        json.member("name", graph.resources[use.resource].name).member("version", use.version);
+        json.member("access", accessName(use.access)).member("write", isWrite(use.access));
+        json.endObject();
     }
-    text += "]}";
+    json.endArray().endObject();
 }
 
-void appendResourceJson(std::string& text, const CompiledResource& resource) {
-    const auto number = [](uint32_t value) {
-        return value == kNoIndex ? std::string("null") : std::to_string(value);
+void writeResource(JsonWriter& json, const CompiledResource& resource) {
+    const auto index = [&](const char* key, uint32_t value) {
+        json.key(key);
+        if (value == kNoIndex)
+            json.null();
+        else
+            json.value(value);
     };
-    append(
-        text,
-        "    {{\"name\": {}, \"kind\": \"{}\", \"description\": {}, \"bytes\": {}, \"origin\": \"{}\"",
-        quoted(resource.name), resource.isBuffer ? "buffer" : "texture", quoted(describe(resource)),
-        resource.bytes, originName(resource.origin));
-    append(text, ", \"first_pass\": {}, \"last_pass\": {}, \"slot\": {}, \"output\": {}}}",
-           number(resource.firstPass), number(resource.lastPass), number(resource.slot),
-           resource.isOutput);
+    json.compact().beginObject().member("name", resource.name);
+    json.member("kind", resource.isBuffer ? "buffer" : "texture");
+    json.member("description", describe(resource)).member("bytes", resource.bytes);
+    json.member("origin", originName(resource.origin));
+    index("first_pass", resource.firstPass);
+    index("last_pass", resource.lastPass);
+    index("slot", resource.slot);
+    json.member("output", bool(resource.isOutput)).endObject();
 }
 
 std::string dumpJson(const CompiledGraph& graph) {
-    std::string text = "{\n  \"passes\": [\n";
-    for (size_t i = 0; i < graph.passes.size(); ++i) {
-        appendPassJson(text, graph, graph.passes[i]);
-        text += i + 1 < graph.passes.size() ? ",\n" : "\n";
-    }
-    text += "  ],\n  \"resources\": [\n";
-    for (size_t i = 1; i < graph.resources.size(); ++i) {
-        appendResourceJson(text, graph.resources[i]);
-        text += i + 1 < graph.resources.size() ? ",\n" : "\n";
-    }
-    append(text, "  ],\n  \"pooled_bytes\": {}, \"unpooled_bytes\": {},\n  \"errors\": [",
-           graph.pooledBytes(), graph.unpooledBytes());
-    for (size_t i = 0; i < graph.errors.size(); ++i)
-        append(text, "{}{}", i == 0 ? "" : ", ", quoted(graph.errors[i]));
-    return text + "]\n}\n";
+    JsonWriter json;
+    json.beginObject().key("passes").beginArray();
+    for (const CompiledPass& pass : graph.passes) writePass(json, graph, pass);
+    json.endArray().key("resources").beginArray();
+    for (size_t i = 1; i < graph.resources.size(); ++i) writeResource(json, graph.resources[i]);
+    json.endArray().member("pooled_bytes", graph.pooledBytes());
+    json.member("unpooled_bytes", graph.unpooledBytes()).key("errors").beginArray();
+    for (const std::string& error : graph.errors) json.value(error);
+    json.endArray().endObject();
+    return json.take();
 }
 
 } // namespace

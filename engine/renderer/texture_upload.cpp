@@ -5,11 +5,15 @@
 
 #include <fmt/format.h>
 
+#include "core/log.h"
 #include "gl/context.h"
 #include "gl/texture.h"
+#include "renderer/texture_scale.h"
 
 namespace tyndall {
 namespace {
+
+constexpr int kLeastSide = 256; // where not even this has room, nothing has
 
 GLenum wrapMode(Wrap wrap) {
     switch (wrap) {
@@ -128,19 +132,36 @@ Result<fg::StaticTexture> TextureUpload::uploadImage(const ImageData& image, Col
                                                      const gl::SamplerSpec& sampler) {
     const std::string name =
         fmt::format("texture {}{}", image.name, space == ColorSpace::Srgb ? " (sRGB)" : "");
-    const int limit = gl::currentCapabilities().limits.textureSize;
-    if (image.width > limit || image.height > limit)
-        return Error{fmt::format(
-            "image '{}' is {}x{} pixels; this driver takes textures up to {} pixels a side",
-            image.name, image.width, image.height, limit)};
     gl::TextureSpec spec;
     spec.internalFormat = space == ColorSpace::Srgb ? GL_SRGB8_ALPHA8 : GL_RGBA8;
     spec.width = image.width;
     spec.height = image.height;
-    spec.mips = gl::fullMipCount(image.width, image.height);
+    const double fits =
+        double(gl::currentCapabilities().limits.textureSize) / std::max(image.width, image.height);
+    if (fits < 1) {
+        spec.width = std::max(1, int(std::lround(image.width * fits)));
+        spec.height = std::max(1, int(std::lround(image.height * fits)));
+    }
+    spec.mips = gl::fullMipCount(spec.width, spec.height);
     Result<gl::Texture> texture = gl::Texture::create(name, spec);
+    // A driver may take the sides, but not that many bytes.
+    while (!texture && std::max(spec.width, spec.height) > kLeastSide) {
+        spec.width = std::max(1, spec.width / 2);
+        spec.height = std::max(1, spec.height / 2);
+        spec.mips = gl::fullMipCount(spec.width, spec.height);
+        texture = gl::Texture::create(name, spec);
+    }
     if (!texture) return texture.error();
-    texture->write(image.rgba.data(), image.rgba.size());
+    if (spec.width == image.width && spec.height == image.height) {
+        texture->write(image.rgba.data(), image.rgba.size());
+    } else {
+        log::warningOnce(name, fmt::format("image '{}' of {}x{} pixels is scaled down to {}x{}, "
+                                           "since this driver has no room for more",
+                                           image.name, image.width, image.height, spec.width,
+                                           spec.height));
+        const ImageData smaller = scaledDown(image, spec.width, spec.height, space);
+        texture->write(smaller.rgba.data(), smaller.rgba.size());
+    }
     texture->generateMips();
     return executor_.registerTexture(name, std::move(*texture), sampler);
 }

@@ -31,7 +31,7 @@ public:
     void setAnisotropy(float anisotropy) { anisotropy_ = anisotropy; }
     [[nodiscard]] float anisotropy() const { return anisotropy_; }
     /// Texture `index` of the scene; white for kNone and for textures without a decoded image.
-    /// Errors: larger than the driver takes, or no room on the GPU.
+    /// What is larger than the driver takes is scaled down, with a warning. Error: no room on the GPU.
     Result<fg::StaticTexture> obtain(const Scene& scene, int index, ColorSpace space);
     /// Releases everything: the scene's images changed.
     void forget();

@@ -5,7 +5,6 @@
 
 #include <fmt/format.h>
 #include <meshoptimizer.h>
-#include <nlohmann/json.hpp>
 
 #include "core/check.h"
 #include "scene/gltf_file.h"
@@ -16,11 +15,6 @@ namespace {
 constexpr int kByte = 5120, kUnsignedByte = 5121, kShort = 5122, kUnsignedShort = 5123,
               kUnsignedInt = 5125, kFloat = 5126;
 constexpr uint64_t kMaxUnpackedBytes = uint64_t(1) << 31;
-
-uint64_t numberOr(const Json& json, const char* key, uint64_t otherwise) {
-    const auto found = json.find(key);
-    return found == json.end() ? otherwise : found->get<uint64_t>();
-}
 
 /// Is [offset, offset + length) inside size bytes? No sum can overflow.
 bool inside(uint64_t offset, uint64_t length, uint64_t size) {
@@ -65,14 +59,13 @@ struct Layout {
     [[nodiscard]] size_t bytes() const { return columns * columnBytes(); }
 };
 
-Layout layoutOf(const Json& accessor) {
-    const std::string type = accessor.at("type").get<std::string>();
+Layout layoutOf(const gltf::Accessor& accessor) {
     Layout layout;
-    layout.componentSize = componentBytes(accessor.at("componentType").get<int>());
-    if (type.starts_with("MAT"))
-        layout.columns = layout.rows = size_t(type[3] - '0');
+    layout.componentSize = componentBytes(accessor.componentType);
+    if (accessor.type.starts_with("MAT"))
+        layout.columns = layout.rows = size_t(accessor.type[3] - '0');
     else
-        layout.rows = size_t(componentCount(type));
+        layout.rows = size_t(componentCount(accessor.type));
     return layout;
 }
 
@@ -86,8 +79,8 @@ bool listed(std::string_view list, std::string_view word) {
 }
 
 /// The parameters that the decoders assert on. Empty when they are right.
-std::string wrongMeshopt(const std::string& mode, const std::string& filter, uint64_t count,
-                         uint64_t stride) {
+std::string wrongMeshopt(const gltf::PackedView& packed) {
+    const auto& [buffer, offset, length, stride, count, mode, filter] = packed;
     if (mode == "ATTRIBUTES" && stride % 4 != 0)
         return "needs a byteStride that is a multiple of 4";
     if (mode != "ATTRIBUTES" && stride != 2 && stride != 4) return "needs a byteStride of 2 or 4";
@@ -122,57 +115,44 @@ int componentCount(std::string_view type) {
     return 0;
 }
 
-size_t GltfFile::accessorCount(size_t accessor) const {
-    return array("accessors")[accessor].at("count").get<size_t>();
-}
-
-Result<std::span<const uint8_t>> GltfFile::viewBytes(size_t view) {
-    const Json& json = array("bufferViews")[view];
-    const std::string pointer = fmt::format("/bufferViews/{}", view);
-    if (const auto extensions = json.find("extensions");
-        extensions != json.end() && extensions->contains("EXT_meshopt_compression")) {
-        if (!unpacked_.contains(view))
-            if (auto unpacked = unpackMeshopt(view); !unpacked) return unpacked.error();
-        return std::span<const uint8_t>(unpacked_.at(view));
+Result<std::span<const uint8_t>> GltfFile::viewBytes(size_t index) {
+    const gltf::BufferView& view = document_.views[index];
+    if (view.packed) {
+        if (!unpacked_.contains(index))
+            if (auto unpacked = unpackMeshopt(index); !unpacked) return unpacked.error();
+        return std::span<const uint8_t>(unpacked_.at(index));
     }
-    const SharedBytes& buffer = buffers_[json.at("buffer").get<size_t>()];
-    const uint64_t offset = numberOr(json, "byteOffset", 0),
-                   length = json.at("byteLength").get<uint64_t>();
-    if (!inside(offset, length, buffer->size()))
-        return at(pointer, fmt::format("spans bytes {} to {} of a buffer of {}", offset,
-                                       offset + length, buffer->size()));
-    return std::span<const uint8_t>(reinterpret_cast<const uint8_t*>(buffer->data()) + offset,
-                                    length);
+    const SharedBytes& buffer = buffers_[view.buffer];
+    if (!inside(view.offset, view.length, buffer->size()))
+        return at(fmt::format("/bufferViews/{}", index),
+                  fmt::format("spans bytes {} to {} of a buffer of {}", view.offset,
+                              view.offset + view.length, buffer->size()));
+    return std::span<const uint8_t>(reinterpret_cast<const uint8_t*>(buffer->data()) + view.offset,
+                                    view.length);
 }
 
 Result<void> GltfFile::unpackMeshopt(size_t view) {
-    const Json& json = array("bufferViews")[view].at("extensions").at("EXT_meshopt_compression");
+    const gltf::PackedView& packed = *document_.views[view].packed;
+    const auto& [index, offset, length, stride, count, mode, filter] = packed;
     const std::string pointer =
         fmt::format("/bufferViews/{}/extensions/EXT_meshopt_compression", view);
-    const SharedBytes& buffer = buffers_[json.at("buffer").get<size_t>()];
-    const uint64_t offset = numberOr(json, "byteOffset", 0),
-                   length = json.at("byteLength").get<uint64_t>();
-    const uint64_t count = json.at("count").get<uint64_t>(),
-                   stride = json.at("byteStride").get<uint64_t>();
-    const std::string mode = json.at("mode").get<std::string>(),
-                      filter = json.value("filter", std::string("NONE"));
+    const SharedBytes& buffer = buffers_[index];
     if (!inside(offset, length, buffer->size()))
         return at(pointer, fmt::format("spans bytes {} to {} of a buffer of {}", offset,
                                        offset + length, buffer->size()));
-    if (const std::string wrong = wrongMeshopt(mode, filter, count, stride); !wrong.empty())
-        return at(pointer, wrong);
+    if (const std::string wrong = wrongMeshopt(packed); !wrong.empty()) return at(pointer, wrong);
     if (count * stride > kMaxUnpackedBytes)
         return at(pointer, fmt::format("unpacks to {} bytes, more than is read", count * stride));
     if (auto fits = charge(count * stride / 4, pointer); !fits) return fits;
     std::vector<uint8_t> bytes(count * stride);
-    const auto* packed = reinterpret_cast<const unsigned char*>(buffer->data()) + offset;
+    const auto* from = reinterpret_cast<const unsigned char*>(buffer->data()) + offset;
     int failed = 0;
     if (mode == "ATTRIBUTES")
-        failed = meshopt_decodeVertexBuffer(bytes.data(), count, stride, packed, length);
+        failed = meshopt_decodeVertexBuffer(bytes.data(), count, stride, from, length);
     else if (mode == "TRIANGLES")
-        failed = meshopt_decodeIndexBuffer(bytes.data(), count, stride, packed, length);
+        failed = meshopt_decodeIndexBuffer(bytes.data(), count, stride, from, length);
     else
-        failed = meshopt_decodeIndexSequence(bytes.data(), count, stride, packed, length);
+        failed = meshopt_decodeIndexSequence(bytes.data(), count, stride, from, length);
     if (failed != 0) return at(pointer, "holds data that is damaged");
     if (filter == "OCTAHEDRAL") meshopt_decodeFilterOct(bytes.data(), count, stride);
     if (filter == "QUATERNION") meshopt_decodeFilterQuat(bytes.data(), count, stride);
@@ -183,25 +163,19 @@ Result<void> GltfFile::unpackMeshopt(size_t view) {
 
 /// The accessor's elements, tightly packed, sparse substitution done.
 Result<std::string> GltfFile::elementBytes(size_t index) {
-    const Json& accessor = array("accessors")[index];
+    const gltf::Accessor& accessor = document_.accessors[index];
     const std::string pointer = fmt::format("/accessors/{}", index);
     const size_t size = layoutOf(accessor).bytes();
-    const uint64_t count = accessor.at("count").get<uint64_t>();
-    if (auto fits =
-            charge(count * size_t(componentCount(accessor.at("type").get<std::string>())), pointer);
-        !fits)
+    const uint64_t count = accessor.count, offset = accessor.offset;
+    if (auto fits = charge(count * size_t(componentCount(accessor.type)), pointer); !fits)
         return fits.error();
     std::string elements(count * size, '\0');
-    if (const auto view = accessor.find("bufferView"); view != accessor.end()) {
-        const auto bytes = viewBytes(view->get<size_t>());
+    if (accessor.view != kNone) {
+        const auto bytes = viewBytes(size_t(accessor.view));
         if (!bytes) return bytes.error();
-        const Json& viewJson = array("bufferViews")[view->get<size_t>()];
-        uint64_t stride = numberOr(viewJson, "byteStride", 0);
-        if (const auto extensions = viewJson.find("extensions");
-            extensions != viewJson.end() && extensions->contains("EXT_meshopt_compression"))
-            stride = extensions->at("EXT_meshopt_compression").at("byteStride").get<uint64_t>();
+        const gltf::BufferView& view = document_.views[size_t(accessor.view)];
+        uint64_t stride = view.packed ? view.packed->stride : view.stride;
         if (stride == 0) stride = size;
-        const uint64_t offset = numberOr(accessor, "byteOffset", 0);
         if (stride < size)
             return at(pointer,
                       fmt::format("has elements of {} bytes, but its buffer view a stride of {}",
@@ -219,22 +193,18 @@ Result<std::string> GltfFile::elementBytes(size_t index) {
 }
 
 Result<void> GltfFile::applySparse(size_t index, std::string& elements) {
-    const Json& accessor = array("accessors")[index];
-    const auto sparse = accessor.find("sparse");
-    if (sparse == accessor.end()) return {};
+    const gltf::Accessor& accessor = document_.accessors[index];
+    if (!accessor.sparse) return {};
     const std::string pointer = fmt::format("/accessors/{}/sparse", index);
-    const uint64_t count = sparse->at("count").get<uint64_t>(),
-                   total = accessor.at("count").get<uint64_t>();
+    const auto& [count, indexView, valueView, indexOffset, valueOffset, indexType] =
+        *accessor.sparse;
     const size_t size = layoutOf(accessor).bytes();
-    const Json &indexJson = sparse->at("indices"), &valueJson = sparse->at("values");
-    const int indexType = indexJson.at("componentType").get<int>();
-    if (count > total) return at(pointer, fmt::format("replaces {} of {} elements", count, total));
-    const auto indexBytes = viewBytes(indexJson.at("bufferView").get<size_t>());
+    if (count > accessor.count)
+        return at(pointer, fmt::format("replaces {} of {} elements", count, accessor.count));
+    const auto indexBytes = viewBytes(indexView);
     if (!indexBytes) return indexBytes.error();
-    const auto valueBytes = viewBytes(valueJson.at("bufferView").get<size_t>());
+    const auto valueBytes = viewBytes(valueView);
     if (!valueBytes) return valueBytes.error();
-    const uint64_t indexOffset = numberOr(indexJson, "byteOffset", 0),
-                   valueOffset = numberOr(valueJson, "byteOffset", 0);
     const size_t indexSize = componentBytes(indexType);
     if (!inside(indexOffset, count * indexSize, indexBytes->size()) ||
         !inside(valueOffset, count * size, valueBytes->size()))
@@ -243,8 +213,8 @@ Result<void> GltfFile::applySparse(size_t index, std::string& elements) {
         const uint32_t target = unsignedComponent(
             reinterpret_cast<const char*>(indexBytes->data()) + indexOffset + i * indexSize,
             indexType);
-        if (target >= total)
-            return at(pointer, fmt::format("replaces element {} of {}", target, total));
+        if (target >= accessor.count)
+            return at(pointer, fmt::format("replaces element {} of {}", target, accessor.count));
         std::memcpy(elements.data() + target * size, valueBytes->data() + valueOffset + i * size,
                     size);
     }
@@ -252,17 +222,15 @@ Result<void> GltfFile::applySparse(size_t index, std::string& elements) {
 }
 
 Result<SharedFloats> GltfFile::floats(size_t index, std::string_view types) {
-    const Json& accessor = array("accessors")[index];
-    const std::string type = accessor.at("type").get<std::string>();
-    const int componentType = accessor.at("componentType").get<int>();
+    const gltf::Accessor& accessor = document_.accessors[index];
     const std::string pointer = fmt::format("/accessors/{}", index);
-    if (!listed(types, type))
-        return at(pointer + "/type", fmt::format("is {} but {} is wanted here", type, types));
+    if (!listed(types, accessor.type))
+        return at(pointer + "/type",
+                  fmt::format("is {} but {} is wanted here", accessor.type, types));
     if (const auto found = decoded_.find(index); found != decoded_.end()) return found->second;
     const auto elements = elementBytes(index);
     if (!elements) return elements.error();
     const Layout layout = layoutOf(accessor);
-    const bool normalized = accessor.value("normalized", false);
     const size_t count = elements->size() / layout.bytes();
     auto data = std::make_shared<FloatData>();
     data->components = int(layout.columns * layout.rows);
@@ -273,7 +241,7 @@ Result<SharedFloats> GltfFile::floats(size_t index, std::string_view types) {
             for (size_t r = 0; r < layout.rows; ++r) {
                 float value = component(elements->data() + i * layout.bytes() +
                                             c * layout.columnBytes() + r * layout.componentSize,
-                                        componentType, normalized);
+                                        accessor.componentType, accessor.normalized);
                 if (!(std::abs(value) <=
                       1e18f)) { // squares of what is kept stay finite in single precision
                     value = 0;
@@ -289,10 +257,9 @@ Result<SharedFloats> GltfFile::floats(size_t index, std::string_view types) {
 }
 
 Result<std::vector<uint32_t>> GltfFile::indices(size_t index) {
-    const Json& accessor = array("accessors")[index];
     const std::string pointer = fmt::format("/accessors/{}", index);
-    const int type = accessor.at("componentType").get<int>();
-    if (accessor.at("type").get<std::string>() != "SCALAR")
+    const int type = document_.accessors[index].componentType;
+    if (document_.accessors[index].type != "SCALAR")
         return at(pointer + "/type", "must be SCALAR for indices");
     if (type != kUnsignedByte && type != kUnsignedShort && type != kUnsignedInt)
         return at(pointer + "/componentType",

@@ -6,7 +6,6 @@
 
 #include <draco/compression/decode.h>
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include "scene/gltf_model.h"
 
@@ -14,9 +13,9 @@ namespace tyndall {
 namespace {
 
 /// What the accessor says about a normalised attribute: Draco's own flag may be missing.
-float scaleOf(const Json& accessor, const draco::PointAttribute& attribute) {
-    if (!accessor.value("normalized", false) || attribute.normalized()) return 1;
-    switch (accessor.at("componentType").get<int>()) {
+float scaleOf(const gltf::Accessor& accessor, const draco::PointAttribute& attribute) {
+    if (!accessor.normalized || attribute.normalized()) return 1;
+    switch (accessor.componentType) {
     case 5120: return 1.0f / 127;
     case 5121: return 1.0f / 255;
     case 5122: return 1.0f / 32767;
@@ -26,9 +25,9 @@ float scaleOf(const Json& accessor, const draco::PointAttribute& attribute) {
 }
 
 SharedFloats readAttribute(const draco::Mesh& mesh, const draco::PointAttribute& attribute,
-                           const Json& accessor) {
+                           const gltf::Accessor& accessor) {
     auto data = std::make_shared<FloatData>();
-    data->components = componentCount(accessor.at("type").get<std::string>());
+    data->components = componentCount(accessor.type);
     data->values.resize(size_t(mesh.num_points()) * size_t(data->components));
     const float scale = scaleOf(accessor, attribute);
     for (uint32_t i = 0; i < mesh.num_points(); ++i) {
@@ -84,11 +83,10 @@ std::string wrongHeader(std::span<const uint8_t> bytes) {
 
 } // namespace
 
-Result<void> decodeDraco(GltfFile& file, const Json& primitive, const std::string& pointer,
-                         PrimitiveSource& source) {
-    const Json& extension = primitive.at("extensions").at("KHR_draco_mesh_compression");
+Result<void> decodeDraco(GltfFile& file, const gltf::Primitive& primitive,
+                         const std::string& pointer, PrimitiveSource& source) {
     const std::string here = pointer + "/extensions/KHR_draco_mesh_compression";
-    const auto bytes = file.viewBytes(extension.at("bufferView").get<size_t>());
+    const auto bytes = file.viewBytes(primitive.draco->view);
     if (!bytes) return bytes.error();
     if (const std::string wrong = wrongHeader(*bytes); !wrong.empty()) return file.at(here, wrong);
     draco::DecoderBuffer buffer;
@@ -109,38 +107,23 @@ Result<void> decodeDraco(GltfFile& file, const Json& primitive, const std::strin
         for (const draco::PointIndex& point : mesh->face(draco::FaceIndex(f)))
             source.indices.push_back(point.value());
 
-    const Json& accessors = file.array("accessors");
-    for (const auto& [name, id] : extension.at("attributes").items()) {
-        const draco::PointAttribute* attribute = mesh->GetAttributeByUniqueId(id.get<uint32_t>());
-        const auto accessor = primitive.at("attributes").find(name);
-        if (!attribute || accessor == primitive.at("attributes").end())
+    for (const auto& [name, id] : primitive.draco->attributes) {
+        const draco::PointAttribute* attribute = mesh->GetAttributeByUniqueId(uint32_t(id));
+        const auto accessor = primitive.attributes.find(name);
+        if (!attribute || accessor == primitive.attributes.end())
             return file.at(
                 here + "/attributes/" + name,
                 "names an attribute that is not in the compressed data or not in the primitive");
-        const Json& described = accessors[accessor->get<size_t>()];
-        const int components = componentCount(described.at("type").get<std::string>());
+        const gltf::Accessor& described = file.document().accessors[size_t(accessor->second)];
+        const int components = componentCount(described.type);
         if (components > 4 || components != int(attribute->num_components()))
             return file.at(here + "/attributes/" + name,
                            fmt::format("has {} components, but the accessor {}",
                                        int(attribute->num_components()), components));
         if (auto fits = file.charge(size_t(mesh->num_points()) * size_t(components), here); !fits)
             return fits;
-        const SharedFloats data = readAttribute(*mesh, *attribute, described);
-        if (name == "POSITION")
-            source.positions = data;
-        else if (name == "NORMAL")
-            source.normals = data;
-        else if (name == "TANGENT")
-            source.tangents = data;
-        else if (name == "COLOR_0")
-            source.colors = data;
-        else if (name == "JOINTS_0")
-            source.joints = data;
-        else if (name == "WEIGHTS_0")
-            source.weights = data;
-        else
-            for (int set = 0; set < kMaxUvSets; ++set)
-                if (name == fmt::format("TEXCOORD_{}", set)) source.uvs[size_t(set)] = data;
+        if (SharedFloats* place = source.place(name))
+            *place = readAttribute(*mesh, *attribute, described);
     }
     return {};
 }

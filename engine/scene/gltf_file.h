@@ -1,9 +1,9 @@
 #pragma once
-// A glTF file opened and checked: JSON whose types, ranges and references are known to be right, and its bytes behind
-// functions that cannot read outside them. Private to the folder.
+// A glTF file opened and checked: its document, whose types, ranges and references are known to be right, and its bytes
+// behind functions that cannot read outside them. Private to the folder.
 //
-// The whole reader works on JSON that passed gltf_rules.h. (tinygltf is not used: it copies images from buffer views
-// before any range check, and turns away Draco files whose index accessors have no bytes of their own.)
+// The container is taken apart here and not by tinygltf, since the rules (gltf_rules.h) judge the JSON in it before tinygltf
+// may see any. Buffers are read here, so that every file goes through readFile and is kept once.
 
 #include <cstdint>
 #include <filesystem>
@@ -15,7 +15,7 @@
 #include <vector>
 
 #include "core/result.h"
-#include "scene/json_text.h"
+#include "scene/gltf_document.h"
 #include "scene/scene_file.h"
 
 namespace tyndall {
@@ -37,9 +37,7 @@ public:
     /// Reads, parses, checks, and loads the buffers. Errors name the file.
     static Result<GltfFile> open(const std::filesystem::path& path, const LoadOptions& options);
 
-    [[nodiscard]] const Json& json() const { return *json_; }
-    /// The elements of a top-level array; an empty array where it is missing.
-    [[nodiscard]] const Json& array(std::string_view name) const;
+    [[nodiscard]] const gltf::Document& document() const { return document_; }
     [[nodiscard]] Error at(const std::string& pointer, const std::string& sentence) const;
     /// "FILE: sentence", once however often it is said.
     void note(const std::string& sentence);
@@ -52,7 +50,6 @@ public:
     Result<SharedFloats> floats(size_t accessor, std::string_view types);
     /// Unsigned integers of a scalar accessor.
     Result<std::vector<uint32_t>> indices(size_t accessor);
-    [[nodiscard]] size_t accessorCount(size_t accessor) const;
 
     /// The bytes of an image: from a buffer view, a data URI or a file beside this one.
     Result<SharedBytes> imageBytes(size_t image);
@@ -64,7 +61,8 @@ public:
     std::vector<std::string> notes;
 
 private:
-    Result<void> openContainer(std::string_view bytes);
+    Result<std::string_view> openContainer(std::string_view bytes);
+    Result<void> readDocument(std::string_view text);
     Result<void> loadBuffers();
     Result<SharedBytes> uriBytes(const std::string& uri, const std::string& pointer);
     Result<void> unpackMeshopt(size_t view);
@@ -73,7 +71,7 @@ private:
 
     std::filesystem::path path_;
     const LoadOptions* options_ = nullptr;
-    std::shared_ptr<Json> json_;
+    gltf::Document document_;
     SharedBytes binaryChunk_;
     std::vector<SharedBytes> buffers_;
     std::map<std::string, SharedBytes> files_;        // by URI

@@ -9,6 +9,7 @@ Result<GltfScene> importGltf(const std::filesystem::path& path, const LoadOption
     if (!file) return file.error();
     GltfScene result;
     if (auto built = GltfModel(*file, result.scene).build(); !built) return built.error();
+    result.extensions = file->document().extensions;
     result.notes = std::move(file->notes);
     return result;
 }

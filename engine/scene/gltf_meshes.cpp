@@ -1,10 +1,10 @@
 // Primitives: attributes, morph targets and skin in the rest pose, lists from strips, missing normals and tangents.
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <unordered_map>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include "core/check.h"
 #include "scene/gltf_model.h"
@@ -111,19 +111,39 @@ void normalizeTangents(Mesh& mesh) {
     }
 }
 
-/// Linear blend skinning of the rest pose (glTF 2.0 section 3.7.3.3).
-void skin(Mesh& mesh, const std::vector<vec4>& joints, const std::vector<vec4>& weights,
-          const std::vector<dmat4>& matrices) {
+/// The n of "PREFIXn"; -1 where `name` is not of that form.
+int setOf(std::string_view name, std::string_view prefix) {
+    int set = -1;
+    if (!name.starts_with(prefix)) return -1;
+    const char* const end = name.data() + name.size();
+    const auto [rest, wrong] = std::from_chars(name.data() + prefix.size(), end, set);
+    return wrong == std::errc() && rest == end ? set : -1;
+}
+
+/// What the accessor of an attribute may be.
+std::string_view typesOf(std::string_view name) {
+    if (name == "POSITION" || name == "NORMAL") return "VEC3";
+    if (name == "COLOR_0") return "VEC3 VEC4";
+    return name.starts_with("TEXCOORD_") ? "VEC2" : "VEC4";
+}
+
+struct Influences {
+    std::vector<vec4> joints, weights;
+};
+
+/// Linear blend skinning of the rest pose (glTF 2.0 section 3.7.3.3), of all sets of four influences.
+void skin(Mesh& mesh, const std::vector<Influences>& sets, const std::vector<dmat4>& matrices) {
     for (size_t i = 0; i < mesh.positions.size(); ++i) {
         dmat4 blend(0.0);
         double total = 0;
-        for (int k = 0; k < 4; ++k) {
-            const double weight = double(weights[i][k]);
-            const float joint = joints[i][k];
-            if (weight == 0 || !(joint >= 0 && joint < float(matrices.size()))) continue;
-            blend += matrices[size_t(joint)] * weight;
-            total += weight;
-        }
+        for (const Influences& set : sets)
+            for (int k = 0; k < 4; ++k) {
+                const double weight = double(set.weights[i][k]);
+                const float joint = set.joints[i][k];
+                if (weight == 0 || !(joint >= 0 && joint < float(matrices.size()))) continue;
+                blend += matrices[size_t(joint)] * weight;
+                total += weight;
+            }
         if (!(std::abs(total) > 1e-6)) continue; // a vertex that no joint moves stays
         blend = blend * (1 / total);
         mesh.positions[i] = vec3(blend * dvec4(dvec3(mesh.positions[i]), 1));
@@ -142,44 +162,55 @@ void skin(Mesh& mesh, const std::vector<vec4>& joints, const std::vector<vec4>& 
 
 } // namespace
 
+SharedFloats* PrimitiveSource::place(std::string_view name) {
+    if (name == "POSITION") return &positions;
+    if (name == "NORMAL") return &normals;
+    if (name == "TANGENT") return &tangents;
+    if (name == "COLOR_0") return &colors;
+    if (const int set = setOf(name, "TEXCOORD_"); set >= 0 && set < kMaxUvSets)
+        return &uvs[size_t(set)];
+    if (const int set = setOf(name, "JOINTS_"); set >= 0) return &influences[set].joints;
+    if (const int set = setOf(name, "WEIGHTS_"); set >= 0) return &influences[set].weights;
+    return nullptr;
+}
+
 Result<std::vector<int>> GltfModel::readMesh(size_t index, const Shape& shape) {
-    const Json& json = file_.array("meshes")[index];
-    const Json& primitives = json.at("primitives");
+    const gltf::Mesh& mesh = file_.document().meshes[index];
     std::vector<int> meshes;
-    for (size_t i = 0; i < primitives.size(); ++i) {
+    for (size_t i = 0; i < mesh.primitives.size(); ++i) {
         const std::string pointer = fmt::format("/meshes/{}/primitives/{}", index, i);
-        if (auto read = readPrimitive(primitives[i], pointer, json.value("name", std::string()),
-                                      shape, meshes);
-            !read)
+        if (auto read = readPrimitive(mesh.primitives[i], pointer, mesh.name, shape, meshes); !read)
             return read.error();
     }
     return meshes;
 }
 
-Result<void> GltfModel::readPrimitive(const Json& json, const std::string& pointer,
+Result<void> GltfModel::readPrimitive(const gltf::Primitive& primitive, const std::string& pointer,
                                       const std::string& name, const Shape& shape,
                                       std::vector<int>& meshes) {
-    if (!json.at("attributes").contains("POSITION")) {
+    if (!primitive.attributes.contains("POSITION")) {
         file_.note(pointer + " has no positions and is left out");
         return {};
     }
-    auto source = readSource(json, pointer);
+    auto source = readSource(primitive, pointer);
     if (!source) return source.error();
-    if (auto morphed = addMorphTargets(json, pointer, shape.weights, *source); !morphed)
+    if (auto morphed = addMorphTargets(primitive, pointer, shape.weights, *source); !morphed)
         return morphed;
-    const SharedFloats joints = source->joints, weights = source->weights;
-    std::vector<uint32_t> from;
-    auto mesh = cutToIndices(json, pointer, *source);
+    auto mesh = cutToIndices(primitive.mode, pointer, *source);
     if (!mesh) return mesh.error();
     if (mesh->positions.empty()) return {}; // nothing to draw
     mesh->name = name;
-    if (const auto material = json.find("material"); material != json.end())
-        mesh->material = material->get<int>();
-    if (shape.joints && joints && weights) {
+    mesh->material = primitive.material;
+    if (shape.joints) {
         // The attributes were cut to the used vertices in the same order as here.
-        std::vector<uint32_t> indices = makeList(json.value("mode", 4), source->indices);
-        from = compact(indices, source->vertexCount());
-        skin(*mesh, gather<vec4>(joints, from, 0), gather<vec4>(weights, from, 0), *shape.joints);
+        std::vector<uint32_t> indices = makeList(primitive.mode, source->indices);
+        const std::vector<uint32_t> from = compact(indices, source->vertexCount());
+        std::vector<Influences> sets;
+        for (const auto& [set, written] : source->influences)
+            if (written.joints && written.weights)
+                sets.push_back({gather<vec4>(written.joints, from, 0),
+                                gather<vec4>(written.weights, from, 0)});
+        skin(*mesh, sets, *shape.joints);
     }
     finishMesh(*mesh, pointer);
     meshes.push_back(int(scene_.meshes.size()));
@@ -187,43 +218,28 @@ Result<void> GltfModel::readPrimitive(const Json& json, const std::string& point
     return {};
 }
 
-Result<PrimitiveSource> GltfModel::readSource(const Json& json, const std::string& pointer) {
+Result<PrimitiveSource> GltfModel::readSource(const gltf::Primitive& primitive,
+                                              const std::string& pointer) {
     PrimitiveSource source;
-    const auto extensions = json.find("extensions");
-    if (extensions != json.end() && extensions->contains("KHR_draco_mesh_compression"))
-        if (auto decoded = decodeDraco(file_, json, pointer, source); !decoded)
+    if (primitive.draco)
+        if (auto decoded = decodeDraco(file_, primitive, pointer, source); !decoded)
             return decoded.error();
-    const Json& attributes = json.at("attributes");
-    const auto read = [&](const std::string& name, std::string_view types,
-                          SharedFloats& to) -> Result<void> {
-        const auto accessor = attributes.find(name);
-        if (to || accessor == attributes.end()) return {};
-        auto values = file_.floats(accessor->get<size_t>(), types);
+    for (const auto& [name, accessor] : primitive.attributes) {
+        SharedFloats* const place = source.place(name);
+        if (!place || *place) continue;
+        auto values = file_.floats(size_t(accessor), typesOf(name));
         if (!values) return values.error();
-        to = *values;
-        return {};
-    };
-    if (auto done = read("POSITION", "VEC3", source.positions); !done) return done.error();
-    if (auto done = read("NORMAL", "VEC3", source.normals); !done) return done.error();
-    if (auto done = read("TANGENT", "VEC4", source.tangents); !done) return done.error();
-    if (auto done = read("COLOR_0", "VEC3 VEC4", source.colors); !done) return done.error();
-    for (int set = 0; set < kMaxUvSets; ++set)
-        if (auto done = read(fmt::format("TEXCOORD_{}", set), "VEC2", source.uvs[size_t(set)]);
-            !done)
-            return done.error();
-    if (auto done = read("JOINTS_0", "VEC4", source.joints); !done) return done.error();
-    if (auto done = read("WEIGHTS_0", "VEC4", source.weights); !done) return done.error();
-
+        *place = *values;
+    }
     const size_t count = source.vertexCount();
-    for (const SharedFloats& data :
-         {source.normals, source.tangents, source.colors, source.uvs[0], source.uvs[1],
-          source.uvs[2], source.uvs[3], source.joints, source.weights})
-        if (data && data->count() != count)
+    for (const auto& [name, accessor] : primitive.attributes)
+        if (const SharedFloats* data = source.place(name);
+            data && *data && (*data)->count() != count)
             return file_.at(pointer,
                             fmt::format("has {} positions, but {} elements of another attribute",
-                                        count, data->count()));
-    if (const auto indices = json.find("indices"); indices != json.end() && !source.indexed) {
-        auto values = file_.indices(indices->get<size_t>());
+                                        count, (*data)->count()));
+    if (primitive.indices != kNone && !source.indexed) {
+        auto values = file_.indices(size_t(primitive.indices));
         if (!values) return values.error();
         source.indices = std::move(*values);
         source.indexed = true;
@@ -240,11 +256,12 @@ Result<PrimitiveSource> GltfModel::readSource(const Json& json, const std::strin
     return source;
 }
 
-Result<void> GltfModel::addMorphTargets(const Json& json, const std::string& pointer,
+Result<void> GltfModel::addMorphTargets(const gltf::Primitive& primitive,
+                                        const std::string& pointer,
                                         const std::vector<double>& weights,
                                         PrimitiveSource& source) {
-    const auto targets = json.find("targets");
-    if (targets == json.end()) return {};
+    const std::vector<gltf::Attributes>& targets = primitive.targets;
+    if (targets.empty()) return {};
     file_.note("morph targets are shown as their default weights have them");
     const std::pair<const char*, SharedFloats*> kinds[] = {{"POSITION", &source.positions},
                                                            {"NORMAL", &source.normals},
@@ -252,10 +269,10 @@ Result<void> GltfModel::addMorphTargets(const Json& json, const std::string& poi
     for (const auto& [name, data] : kinds) {
         if (!*data) continue;
         std::shared_ptr<FloatData> moved;
-        for (size_t t = 0; t < std::min(targets->size(), weights.size()); ++t) {
-            const auto accessor = (*targets)[t].find(name);
-            if (accessor == (*targets)[t].end() || weights[t] == 0) continue;
-            const auto offsets = file_.floats(accessor->get<size_t>(), "VEC3");
+        for (size_t t = 0; t < std::min(targets.size(), weights.size()); ++t) {
+            const auto accessor = targets[t].find(name);
+            if (accessor == targets[t].end() || weights[t] == 0) continue;
+            const auto offsets = file_.floats(size_t(accessor->second), "VEC3");
             if (!offsets) return offsets.error();
             if ((*offsets)->count() != (*data)->count())
                 return file_.at(fmt::format("{}/targets/{}/{}", pointer, t, name),
@@ -275,9 +292,8 @@ Result<void> GltfModel::addMorphTargets(const Json& json, const std::string& poi
     return {};
 }
 
-Result<Mesh> GltfModel::cutToIndices(const Json& json, const std::string& pointer,
+Result<Mesh> GltfModel::cutToIndices(int mode, const std::string& pointer,
                                      const PrimitiveSource& source) {
-    const int mode = json.value("mode", 4);
     Mesh mesh;
     mesh.topology = topologyOf(mode);
     // A strip makes up to three indices out of one; what they keep of the attributes is at most as much.

@@ -14,16 +14,21 @@ namespace tyndall {
 struct PrimitiveSource {
     SharedFloats positions, normals, tangents, colors;
     std::array<SharedFloats, kMaxUvSets> uvs;
-    SharedFloats joints, weights; // JOINTS_0, WEIGHTS_0
+    struct Influences {
+        SharedFloats joints, weights; // four a vertex
+    };
+    std::map<int, Influences> influences; // JOINTS_n and WEIGHTS_n by n
     std::vector<uint32_t>
         indices; // as in the file, before lists are made; empty: all vertices in order
     bool indexed = false;
+    /// Where the attribute `name` is kept; null where nothing here uses it.
+    SharedFloats* place(std::string_view name);
     [[nodiscard]] size_t vertexCount() const { return positions ? positions->count() : 0; }
 };
 
 /// Fills everything that a KHR_draco_mesh_compression bit stream holds; attributes that it does not hold stay null.
-Result<void> decodeDraco(GltfFile& file, const Json& extension, const std::string& pointer,
-                         PrimitiveSource& source);
+Result<void> decodeDraco(GltfFile& file, const gltf::Primitive& primitive,
+                         const std::string& pointer, PrimitiveSource& source);
 
 /// Joint matrices (root from mesh) of a skin in its rest pose.
 Result<std::vector<dmat4>> skinMatrices(GltfFile& file, size_t skin,
@@ -37,7 +42,7 @@ public:
 private:
     // Materials (gltf_materials.cpp).
     Result<void> readMaterials();
-    Result<TextureRef> readTextureRef(const Json& info, const std::string& pointer);
+    Result<void> readTextureRef(TextureRef& reference, const std::string& pointer);
     Result<int> readTexture(size_t texture);
     Result<int> readImage(size_t image);
 
@@ -47,26 +52,26 @@ private:
         const std::vector<dmat4>* joints = nullptr;
     };
     Result<std::vector<int>> readMesh(size_t mesh, const Shape& shape);
-    Result<void> readPrimitive(const Json& json, const std::string& pointer,
+    Result<void> readPrimitive(const gltf::Primitive& primitive, const std::string& pointer,
                                const std::string& name, const Shape& shape,
                                std::vector<int>& meshes);
-    Result<PrimitiveSource> readSource(const Json& json, const std::string& pointer);
-    Result<void> addMorphTargets(const Json& json, const std::string& pointer,
+    Result<PrimitiveSource> readSource(const gltf::Primitive& primitive,
+                                       const std::string& pointer);
+    Result<void> addMorphTargets(const gltf::Primitive& primitive, const std::string& pointer,
                                  const std::vector<double>& weights, PrimitiveSource& source);
-    Result<Mesh> cutToIndices(const Json& json, const std::string& pointer,
-                              const PrimitiveSource& source);
+    Result<Mesh> cutToIndices(int mode, const std::string& pointer, const PrimitiveSource& source);
     void finishMesh(Mesh& mesh, const std::string& pointer);
 
     // Nodes (gltf_nodes.cpp).
     Result<void> readNodes();
-    Result<std::vector<size_t>> roots() const;
-    Result<void> orderNodes(const std::vector<size_t>& roots);
+    std::vector<int> roots() const;
+    Result<void> orderNodes(const std::vector<int>& roots);
     Result<Node> readNode(size_t index);
-    Result<void> readTransform(const Json& json, const std::string& pointer, Node& node);
-    Result<std::vector<dmat4>> readInstances(const Json& attributes, const std::string& pointer);
+    Result<std::vector<dmat4>> readInstances(const gltf::Attributes& attributes,
+                                             const std::string& pointer);
     Result<void> attachMeshes();
     Result<int> readCamera(size_t camera);
-    Result<int> readLight(size_t light);
+    int readLight(size_t light);
     void noteStaticPose();
 
     GltfFile& file_;

@@ -1,5 +1,4 @@
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include "scene/gltf_model.h"
 
@@ -7,11 +6,10 @@ namespace tyndall {
 
 Result<std::vector<dmat4>> skinMatrices(GltfFile& file, size_t skin,
                                         const std::vector<dmat4>& rootFromNode) {
-    const Json& json = file.array("skins")[skin];
-    const Json& joints = json.at("joints");
+    const std::vector<int>& joints = file.document().skins[skin].joints;
     SharedFloats inverseBind;
-    if (const auto accessor = json.find("inverseBindMatrices"); accessor != json.end()) {
-        auto values = file.floats(accessor->get<size_t>(), "MAT4");
+    if (const int accessor = file.document().skins[skin].inverseBind; accessor != kNone) {
+        auto values = file.floats(size_t(accessor), "MAT4");
         if (!values) return values.error();
         inverseBind = *values;
         if (inverseBind->count() < joints.size())
@@ -24,7 +22,7 @@ Result<std::vector<dmat4>> skinMatrices(GltfFile& file, size_t skin,
         dmat4 bind(1.0);
         if (inverseBind)
             for (int k = 0; k < 16; ++k) bind[k / 4][k % 4] = double(inverseBind->at(i)[k]);
-        matrices.push_back(rootFromNode[joints[i].get<size_t>()] * bind);
+        matrices.push_back(rootFromNode[size_t(joints[i])] * bind);
     }
     return matrices;
 }

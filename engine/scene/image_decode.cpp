@@ -29,8 +29,8 @@ bool startsWith(std::span<const uint8_t> bytes, std::string_view magic, size_t o
            std::memcmp(bytes.data() + offset, magic.data(), magic.size()) == 0;
 }
 
-/// Enough for a picture of one colour as PNG; what claims more is a bomb.
-constexpr int64_t kMaxPixelsPerByte = 2048, kAlwaysAllowed = int64_t(1) << 24;
+/// What deflate makes of zeros (1032 bytes of one), as eight pixels a byte; what claims more is a bomb.
+constexpr int64_t kMaxPixelsPerByte = 8 * 1032, kAlwaysAllowed = int64_t(1) << 24;
 
 Result<void> checkSize(int width, int height, size_t bytes) {
     if (width < 1 || height < 1 || width > kMaxTextureSide || height > kMaxTextureSide ||

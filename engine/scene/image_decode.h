@@ -9,8 +9,8 @@
 
 namespace tyndall {
 
-inline constexpr int kMaxTextureSide = 16384;
-inline constexpr int64_t kMaxTexturePixels = int64_t(1) << 26; // 8192², 256 MiB decoded
+inline constexpr int kMaxTextureSide = 1 << 16; // what GPUs do not take is scaled down on its way there
+inline constexpr int64_t kMaxTexturePixels = int64_t(1) << 28; // 16384², 1 GiB decoded
 
 /// Decodes to RGBA, top row first (16-bit PNGs lose their low bits). The size is checked before anything is
 /// allocated. Errors (without the file's name): not one of the three formats, damaged, over the limits.

@@ -10,7 +10,7 @@
 #include "core/check.h"
 #include "core/math.h"
 #include "core/settings.h"
-#include "scene/json_text.h"
+#include "scene/json_parse.h"
 
 namespace tyndall {
 

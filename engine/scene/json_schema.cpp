@@ -1,5 +1,6 @@
 #include "scene/json_schema.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -53,7 +54,64 @@ public:
         return {};
     }
 
+    /// See roundIntoLimits.
+    void round(Json& value, const Json& schemaHere, const std::string& pointer,
+               Rounded& rounded) const {
+        const Json& schema = resolved(schemaHere);
+        if (value.is_number()) {
+            const double tolerance = schema.value("tolerance", 0.0), number = value.get<double>();
+            const double limited = std::clamp(number, schema.value("minimum", number),
+                                              schema.value("maximum", number));
+            if (limited == number || std::abs(limited - number) > tolerance) return;
+            if (rounded.count++ == 0) rounded.first = pointer + " is " + value.dump();
+            value = limited;
+        } else if (const auto items = schema.find("items");
+                   value.is_array() && items != schema.end()) {
+            for (size_t i = 0; i < value.size(); ++i)
+                round(value[i], *items, fmt::format("{}/{}", pointer, i), rounded);
+        } else if (const auto properties = schema.find("properties");
+                   value.is_object() && properties != schema.end()) {
+            for (auto& [key, member] : value.items())
+                if (const auto property = properties->find(key); property != properties->end())
+                    round(member, *property, pointer + "/" + key, rounded);
+        }
+    }
+
+    /// See keepJudged.
+    void keep(Json& value, const Json& schemaHere) const {
+        const Json& schema = resolved(schemaHere);
+        if (value.is_number()) return writeNumber(value, schema);
+        if (value.is_array()) {
+            const auto items = schema.find("items");
+            for (Json& item : value) {
+                if (items == schema.end())
+                    item = Json::object();
+                else
+                    keep(item, *items);
+            }
+        }
+        if (!value.is_object()) return;
+        const Json none = Json::object();
+        const auto found = schema.find("properties"), others = schema.find("additionalProperties");
+        const Json& properties = found == schema.end() ? none : *found;
+        Json kept = Json::object();
+        for (auto& [key, member] : value.items()) {
+            const auto property = properties.find(key);
+            if (property == properties.end() && others == schema.end()) continue;
+            keep(member, property == properties.end() ? *others : *property);
+            kept[key] = std::move(member);
+        }
+        value = std::move(kept);
+    }
+
 private:
+    static void writeNumber(Json& value, const Json& schema) {
+        if (schema.value("type", std::string()) == "number")
+            value = value.get<double>();
+        else if (value.get<double>() >= 0)
+            value = value.get<uint64_t>();
+    }
+
     static Error wrong(const std::string& pointer, const std::string& sentence) {
         return Error{(pointer.empty() ? std::string("the file") : pointer) + " " + sentence};
     }
@@ -197,6 +255,14 @@ private:
 Result<void> validateJson(const Json& value, const Json& schema) {
     return Validator(schema).check(value, schema, "");
 }
+
+Rounded roundIntoLimits(Json& value, const Json& schema) {
+    Rounded rounded;
+    Validator(schema).round(value, schema, "", rounded);
+    return rounded;
+}
+
+void keepJudged(Json& value, const Json& schema) { Validator(schema).keep(value, schema); }
 
 const Json& sceneFileSchema() {
     static const Json schema = Json::parse(kSceneSchemaText);

@@ -150,19 +150,4 @@ void makeTangents(Mesh& mesh, int uvSet) {
     }
 }
 
-void dropUnusedVertices(Mesh& mesh) {
-    std::vector<uint32_t> to(mesh.positions.size(), kUnused), from;
-    for (uint32_t& index : mesh.indices) {
-        if (to[index] == kUnused) {
-            to[index] = uint32_t(from.size());
-            from.push_back(index);
-        }
-        index = to[index];
-    }
-    if (from.size() < mesh.positions.size())
-        gatherVertices(mesh, from);
-    else
-        for (uint32_t& index : mesh.indices) index = from[index];
-}
-
 } // namespace tyndall

@@ -22,8 +22,4 @@ void makeFlatNormals(Mesh& mesh);
 /// glTF asks for MikkTSpace; this differs from it only inside a smoothing group whose UV charts meet at one vertex without a split.
 void makeTangents(Mesh& mesh, int uvSet);
 
-/// Keeps only the vertices that `indices` uses, in order of first use, so that one big vertex buffer
-/// shared by many primitives is not copied for each.
-void dropUnusedVertices(Mesh& mesh);
-
 } // namespace tyndall

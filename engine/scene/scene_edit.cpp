@@ -96,18 +96,11 @@ void setNodeVisible(Scene& scene, int node, bool visible) {
     scene.versions.structure = nextVersion();
 }
 
-void renameNode(Scene& scene, int node, std::string name) {
-    at(scene.nodes, node, "node").name = std::move(name);
-}
-
 void setMaterial(Scene& scene, int material, Material value) {
     replace(scene.materials, material, std::move(value), "material", scene.versions.materials);
 }
 void setLight(Scene& scene, int light, Light value) {
     replace(scene.lights, light, std::move(value), "light", scene.versions.lights);
-}
-void setCamera(Scene& scene, int camera, Camera value) {
-    replace(scene.cameras, camera, std::move(value), "camera", scene.versions.cameras);
 }
 void setMedium(Scene& scene, int medium, Medium value) {
     replace(scene.media, medium, std::move(value), "medium", scene.versions.media);
@@ -118,14 +111,6 @@ Result<std::vector<std::string>> setParticles(Scene& scene, int medium,
     Result<std::vector<std::string>> notes = setParticles(changed, std::move(particles));
     if (notes) setMedium(scene, medium, std::move(changed));
     return notes;
-}
-void setMesh(Scene& scene, int mesh, Mesh value) {
-    replace(scene.meshes, mesh, std::move(value), "mesh", scene.versions.meshes);
-}
-
-void setEnvironment(Scene& scene, Environment value) {
-    value.version = scene.versions.environment = nextVersion();
-    scene.environment = std::move(value);
 }
 
 void setActiveCamera(Scene& scene, int node) {

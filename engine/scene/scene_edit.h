@@ -17,19 +17,15 @@ void setNodeTransform(Scene& scene, int node, const dvec3& translation, const dq
                       const dvec3& scale);
 void setNodeMatrix(Scene& scene, int node, const dmat4& parentFromNode);
 void setNodeVisible(Scene& scene, int node, bool visible);
-void renameNode(Scene& scene, int node, std::string name);
 
 /// Replace the whole thing; its own version and its kind's are new afterwards.
 void setMaterial(Scene& scene, int material, Material value);
 void setLight(Scene& scene, int light, Light value);
-void setCamera(Scene& scene, int camera, Camera value);
 void setMedium(Scene& scene, int medium, Medium value);
 /// What the medium consists of: makes its grids anew, for particles that have moved. Returns notes, a sentence each. Errors as
 /// makeParticleGrids; the scene is then as it was.
 Result<std::vector<std::string>> setParticles(Scene& scene, int medium,
                                               std::shared_ptr<const ParticleSet> particles);
-void setMesh(Scene& scene, int mesh, Mesh value);
-void setEnvironment(Scene& scene, Environment value);
 void setActiveCamera(Scene& scene, int node);
 
 /// Appends; the index of the new one. addNode CHECKs that the parent exists.

@@ -33,8 +33,9 @@ Result<void> readGltfFile(LoadedScene& loaded, const fs::path& path, const LoadO
     if (auto mounted = GltfMounts().mount(loaded, 0, path, options); !mounted) return mounted;
     for (size_t i = 0; i < loaded.scene.nodes.size() && loaded.scene.activeCamera == kNone; ++i)
         if (loaded.scene.nodes[i].camera != kNone) loaded.scene.activeCamera = int(i);
+    const auto lamp = supplyCameraInside(loaded);
     supplyCamera(loaded);
-    supplyLight(loaded);
+    supplyLight(loaded, lamp);
     supplyExposure(loaded);
     return {};
 }

@@ -16,6 +16,7 @@ struct LoadedScene {
     Scene scene;
     std::vector<std::string>
         supplied; // "a camera that frames the scene", for the zero-configuration start
+    std::vector<std::string> extensions; // that its glTF files use, by their names
     std::vector<std::string>
         notes; // mapped synonyms, ignored extensions, sanitised voxels: one sentence each
 };

@@ -45,6 +45,7 @@ Result<void> GltfMounts::mount(LoadedScene& loaded, int node, const std::filesys
         auto imported = importGltf(file, options);
         if (!imported) return imported.error();
         moveAssets(loaded.scene, imported->scene);
+        moveInto(loaded.extensions, imported->extensions);
         moveInto(loaded.notes, imported->notes);
         found = mounted_.emplace(key, Mounted{std::move(imported->scene.nodes)}).first;
     }

@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "scene/json_text.h"
+#include "scene/json_parse.h"
 #include "scene/scene_file.h"
 #include "scene/scene_mount.h"
 

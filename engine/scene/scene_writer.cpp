@@ -9,7 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/image.h"
-#include "scene/json_text.h"
+#include "scene/json_parse.h"
 #include "scene/primitives.h"
 
 namespace tyndall {

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "media/grid_import.h"
+#include "scene/scene_reach.h"
 
 namespace tyndall {
 namespace {
@@ -15,13 +16,6 @@ constexpr double kSunLux = 10;
 constexpr double kSkyNits = 0.5;
 constexpr double kOpticalDepth = 4;
 constexpr double kAlbedo = 0.99;
-
-/// The rotation that turns -Z to `forward` (unit), with +Y as far up as it goes.
-dquat lookingAlong(const dvec3& forward) {
-    const dvec3 upHint = std::abs(forward.y) > 0.999 ? dvec3(0, 0, 1) : dvec3(0, 1, 0);
-    const dvec3 right = glm::normalize(glm::cross(forward, upHint));
-    return glm::normalize(glm::quat_cast(dmat3(right, glm::cross(right, forward), -forward)));
-}
 
 bool emits(const Scene& scene) {
     if (scene.environment.image || scene.environment.radiance != vec3(0)) return true;
@@ -66,10 +60,16 @@ double meanDensity(const BrickGrid& grid) {
 
 } // namespace
 
+dquat rotationLookingAlong(const dvec3& forward) {
+    const dvec3 upHint = std::abs(forward.y) > 0.999 ? dvec3(0, 0, 1) : dvec3(0, 1, 0);
+    const dvec3 right = glm::normalize(glm::cross(forward, upHint));
+    return glm::normalize(glm::quat_cast(dmat3(right, glm::cross(right, forward), -forward)));
+}
+
 void supplyCamera(LoadedScene& loaded) {
     Scene& scene = loaded.scene;
     if (scene.activeCamera != kNone) return;
-    Bounds bounds = scene.worldBounds();
+    Bounds bounds = reachOfLargest(findClusters(scene)).surroundings;
     if (bounds.empty()) bounds.include(dvec3(0));
     const double radius =
         std::max(0.5 * glm::length(bounds.extent()), 1e-6 * (1 + glm::length(bounds.centre())));
@@ -83,7 +83,7 @@ void supplyCamera(LoadedScene& loaded) {
     Node node;
     node.name = camera.name;
     node.translation = bounds.centre() - distance * forward;
-    node.rotation = lookingAlong(forward);
+    node.rotation = rotationLookingAlong(forward);
     node.camera = int(scene.cameras.size());
     scene.cameras.push_back(std::move(camera));
     scene.activeCamera = int(scene.nodes.size());
@@ -91,7 +91,7 @@ void supplyCamera(LoadedScene& loaded) {
     loaded.supplied.push_back("a camera that frames the scene");
 }
 
-void supplyLight(LoadedScene& loaded) {
+void supplyLight(LoadedScene& loaded, const std::optional<SuppliedLamp>& lamp) {
     Scene& scene = loaded.scene;
     if (emits(scene)) return;
     Light sun;
@@ -100,18 +100,30 @@ void supplyLight(LoadedScene& loaded) {
     sun.intensity = float(kSunLux);
     Node node;
     node.name = sun.name;
-    node.rotation = lookingAlong(glm::normalize(dvec3(0.5, -1, -0.6)));
+    node.rotation = rotationLookingAlong(glm::normalize(dvec3(0.5, -1, -0.6)));
     node.light = int(scene.lights.size());
     scene.lights.push_back(std::move(sun));
     scene.nodes.push_back(std::move(node));
     scene.environment.radiance = vec3(float(kSkyNits));
     loaded.supplied.push_back(
         fmt::format("a sun of {} lux and a sky of {} nits", kSunLux, kSkyNits));
+    if (!lamp) return;
+    Light inside; // as bright on what is around it as the sun is outside
+    inside.name = "supplied lamp";
+    inside.intensity = float(std::min(kSunLux * lamp->reach * lamp->reach, 1e30));
+    Node holder;
+    holder.name = inside.name;
+    holder.translation = lamp->position;
+    holder.light = int(scene.lights.size());
+    loaded.supplied.push_back(
+        fmt::format("a lamp of {:.3g} candela in the middle", double(inside.intensity)));
+    scene.lights.push_back(std::move(inside));
+    scene.nodes.push_back(std::move(holder));
 }
 
 void supplyExposure(LoadedScene& loaded) {
     Scene& scene = loaded.scene;
-    const Bounds bounds = scene.worldBounds();
+    const Bounds bounds = reachOfLargest(findClusters(scene)).surroundings;
     const dvec3 centre = bounds.empty() ? dvec3(0) : bounds.centre();
     const double radius = bounds.empty() ? 1 : std::max(0.5 * glm::length(bounds.extent()), 1e-9);
     const std::vector<dmat4> world = scene.worldTransforms();

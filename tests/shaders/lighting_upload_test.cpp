@@ -8,6 +8,7 @@
 #include "renderer/blend_list.h"
 #include "renderer/environment_map.h"
 #include "renderer/gpu_scene.h"
+#include "renderer/texture_scale.h"
 #include "support/content.h"
 
 namespace tyndall {
@@ -31,6 +32,26 @@ TEST(PackVertices, RefusesAttributesOfAnotherLength) {
     mesh.positions = {{1, 2, 3}, {4, 5, 6}};
     mesh.normals = {{0, 1, 0}};
     EXPECT_THROW(packVertices(mesh), CheckFailure);
+}
+
+/// Half black, half white is 0.5 of the light: 188 as sRGB (IEC 61966-2-1: 1.055·0.5^(1/2.4) − 0.055 = 0.7354). Alpha is linear.
+TEST(ScaledDown, AveragesLightAndNotItsCode) {
+    ImageData image;
+    image.width = 6;
+    image.height = 4;
+    for (int i = 0; i < 24; ++i) {
+        const uint8_t light = i % 2 ? 255 : 0;
+        image.rgba.insert(image.rgba.end(), {light, light, light, uint8_t(255 - light)});
+    }
+    for (const auto& [space, mean] :
+         {std::pair(ColorSpace::Srgb, 188), std::pair(ColorSpace::Linear, 128)}) {
+        const ImageData smaller = scaledDown(image, 3, 2, space);
+        ASSERT_EQ(smaller.width, 3);
+        ASSERT_EQ(smaller.height, 2);
+        ASSERT_EQ(smaller.rgba.size(), 24u);
+        for (size_t i = 0; i < smaller.rgba.size(); ++i) // one code: 127.5 is rounded either way
+            EXPECT_NEAR(smaller.rgba[i], i % 4 == 3 ? 128 : mean, 1) << "byte " << i;
+    }
 }
 
 TEST(AlphaCutoffs, KeepTheAreaOfThinLeavesInEveryLevel) {

@@ -106,6 +106,7 @@ TEST(GltfHostile, SmallFilesCannotAskForMuch) {
                "accessors": [{"bufferView": 0, "componentType": 5126, "type": "VEC3", "count": 3}],
                "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}], "nodes": [{"mesh": 0}])");
     refused(R"("nodes": )" + std::string(100000, '['));
+    refused(R"("extras": )" + std::string(100000, '[') + std::string(100000, ']'));
     // A chain of nodes as deep as a file can make it is no problem.
     for (int i = 0; i < 50000; ++i)
         nodes += (i ? ", " : "") + (i < 49999 ? R"({"children": [)" + std::to_string(i + 1) + "]}"
@@ -117,6 +118,28 @@ TEST(GltfHostile, SmallFilesCannotAskForMuch) {
             .ok());
     expectLoadedOrRefused(path);
     EXPECT_TRUE(loadScene(path).ok());
+}
+
+/// What tinygltf 2.7 refuses, though glTF 2.0 allows it or it does no harm.
+TEST(GltfHostile, WhatTinygltfRefusesIsLoadedWhereItIsSound) {
+    const fs::path path = test::scratchDir("gltf-tinygltf") / "model.gltf";
+    for (
+        const char* keys :
+        {R"("buffers": [{"byteLength": 8}], "bufferViews": [{"buffer": 0, "byteLength": 8, "byteStride": 3}])",
+         R"("buffers": [{"byteLength": 1, "uri": "data:image/webp;base64,AAAA"}])",
+         R"("images": [{}, {"uri": "data:image/webp;base64,AAAA"}, {"uri": "none.png"}])",
+         R"("animations": [{"samplers": [{}]}, {"channels": 7}])",
+         R"("cameras": [{"type": "orthographic", "orthographic": {"ymag": 1, "znear": 0}}], "nodes": [{"camera": 0}])",
+         R"("extensions": {"KHR_lights_punctual": {"lights": [{"type": "spot"}]}},
+            "nodes": [{"extensions": {"KHR_lights_punctual": {"light": 0.0}}}])",
+         R"("extras": {"a": [null, 1e300, {"b": {}}]}, "extensions": {"VENDOR_x": {"y": [[[[1]]]]}})"}) {
+        SCOPED_TRACE(keys);
+        ASSERT_TRUE(
+            writeFileAtomically(path, R"({"asset": {"version": "2.0"}, )" + std::string(keys) + "}")
+                .ok());
+        const auto loaded = loadScene(path);
+        EXPECT_TRUE(loaded.ok()) << loaded.message();
+    }
 }
 
 } // namespace

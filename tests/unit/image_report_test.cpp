@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "core/check.h"
-#include "core/json_text.h"
+#include "core/json_writer.h"
 #include "core/progress.h"
 #include "core/trace.h"
 

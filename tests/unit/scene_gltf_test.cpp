@@ -261,7 +261,8 @@ TEST(GltfImport, NodesKeepTheirTransformsCamerasAndLights) {
     EXPECT_EQ(light.range, 6);
     EXPECT_EQ(light.innerConeAngle, 0.1f);
     EXPECT_EQ(light.outerConeAngle, 0.3f);
-    EXPECT_EQ(loaded->notes.size(), 1u) << "one of two scenes is shown";
+    EXPECT_EQ(loaded->notes.size(), 2u)
+        << "one of two scenes is shown, and a rotation has length 2";
 }
 
 TEST(GltfImport, InstancesAreTranslationRotationScale) {
@@ -300,6 +301,87 @@ TEST(GltfImport, SkinnedMeshTakesItsRestPoseAndNotItsNode) {
     EXPECT_EQ(mesh.positions[2], vec3(0, 1, 5)) << "half way between both joints";
     EXPECT_NEAR(loaded->scene.worldBounds().maximum.x, 1, 1e-6)
         << "the node's own transform is ignored (glTF 2.0, 3.7.3.3)";
+}
+
+/// The mean of joints at y = 0 to 7, each with an eighth of the weight: 3.5. The first four alone would give 1.5.
+TEST(GltfImport, AllSetsOfInfluencesMoveAVertex) {
+    GltfBuilder builder;
+    builder.positions({0, 0, 0, 1, 0, 0, 0, 0, 1});
+    std::vector<uint8_t> first, second;
+    for (int vertex = 0; vertex < 3; ++vertex)
+        for (uint8_t joint = 0; joint < 4; ++joint) {
+            first.push_back(joint);
+            second.push_back(uint8_t(joint + 4));
+        }
+    builder.add(first, 5121, "VEC4", 4);
+    builder.add(second, 5121, "VEC4", 4);
+    builder.add(std::vector<float>(12, 0.125f), 5126, "VEC4", 4);
+    std::string joints, nodes;
+    for (int joint = 0; joint < 8; ++joint) {
+        joints += fmt::format("{}{}", joint ? ", " : "", joint + 1);
+        nodes += fmt::format(R"(, {{"translation": [0, {}, 0]}})", joint);
+    }
+    const auto loaded = builder.import(
+        R"(, "meshes": [{"primitives": [{"attributes": {"POSITION": 0, "JOINTS_0": 1, "JOINTS_1": 2, "WEIGHTS_0": 3, "WEIGHTS_1": 3}}]}],
+        "skins": [{"joints": [)" +
+        joints + R"(]}], "nodes": [{"mesh": 0, "skin": 0})" + nodes + "]");
+    ASSERT_TRUE(loaded.ok()) << loaded.message();
+    EXPECT_EQ(loaded->scene.meshes.at(0).positions,
+              (std::vector<vec3>{{0, 3.5f, 0}, {1, 3.5f, 0}, {0, 3.5f, 1}}));
+}
+
+TEST(GltfImport, RoundingErrorsOutsideOfTheLimitsAreTakenWithANote) {
+    const auto loaded = importKeys(
+        R"("materials": [{"pbrMetallicRoughness": {"metallicFactor": 1.0000001, "roughnessFactor": -1e-9, "baseColorFactor": [1.000001, 0.5, 0, 1]}}],
+        "nodes": [{"matrix": [2,0,0,1e-8, 0,2,0,0, 0,0,2,-1e-7, 3,0,0,0.9999999]}, {"rotation": [0, 0, 0, 1.0000001]}])");
+    ASSERT_TRUE(loaded.ok()) << loaded.message();
+    const Material& material = loaded->scene.materials.at(0);
+    EXPECT_EQ(material.metallic, 1.0f);
+    EXPECT_EQ(material.roughness, 0.0f);
+    EXPECT_EQ(material.baseColor, vec4(1, 0.5f, 0, 1));
+    const dmat4& matrix = loaded->scene.nodes.at(0).matrix.value();
+    EXPECT_EQ(dvec4(matrix[0][3], matrix[1][3], matrix[2][3], matrix[3][3]), dvec4(0, 0, 0, 1));
+    EXPECT_EQ(matrix[3][0], 3.0);
+    EXPECT_EQ(
+        loaded->notes,
+        (std::vector<std::string>{
+            "test.gltf: /materials/0/pbrMetallicRoughness/metallicFactor is 1.0000001, a rounding error outside of glTF's limits; the limit is taken (also in 2 other places)",
+            "test.gltf: /nodes/0/matrix has a last row that is not 0, 0, 0, 1, a rounding error outside of glTF's limits; the limit is taken"}));
+}
+
+TEST(GltfImport, WhatIsMoreThanARoundingErrorIsRefused) {
+    const std::pair<const char*, const char*> cases[] = {
+        {R"("materials": [{"pbrMetallicRoughness": {"metallicFactor": 1.001}}])",
+         "/materials/0/pbrMetallicRoughness/metallicFactor is 1.001 but must be at most 1"},
+        {R"("materials": [{"emissiveFactor": [0, -0.1, 0]}])",
+         "/materials/0/emissiveFactor/1 is -0.1 but must be at least 0"},
+        {R"("nodes": [{"matrix": [1,0,0,0.001, 0,1,0,0, 0,0,1,0, 0,0,0,1]}])",
+         "/nodes/0/matrix is not affine: its last row (elements 3, 7, 11 and 15) must be 0, 0, 0, 1"},
+    };
+    for (const auto& [keys, sentence] : cases)
+        EXPECT_EQ(refusal(importKeys(keys)), sentence) << keys;
+}
+
+/// RFC 3986 wants "%25" for '%'; exporters write the name as it is. What the URI means comes first.
+TEST(GltfImport, FilesAreFoundByWhatTheirUriMeansElseByItsLetters) {
+    const fs::path folder = test::scratchDir("gltf-names");
+    const auto loads = [&](const std::string& uri) {
+        CHECK(
+            writeFileAtomically(
+                folder / "test.gltf",
+                fmt::format(
+                    R"({{"asset": {{"version": "2.0"}}, "buffers": [{{"uri": "{}", "byteLength": 1}}]}})",
+                    uri))
+                .ok());
+        return importGltf(folder / "test.gltf").ok();
+    };
+    for (const char* name : {"10%.bin", "20%25.bin", "a b.bin", "c+d.bin", "e#f.bin"})
+        ASSERT_TRUE(writeFileAtomically(folder / name, "x").ok());
+    for (const char* uri : {"10%.bin", "10%25.bin", "20%25.bin", "20%2525.bin", "a b.bin",
+                            "a%20b.bin", "c+d.bin", "e#f.bin", "none/../c+d.bin", "./c+d.bin"})
+        EXPECT_TRUE(loads(uri)) << uri;
+    for (const char* uri : {"30%.bin", "c d.bin", "c+d.bin?v=1", "file:c+d.bin", "%2Fetc%2Fpasswd"})
+        EXPECT_FALSE(loads(uri)) << uri;
 }
 
 TEST(GltfImport, MorphTargetsTakeTheirDefaultWeights) {
@@ -350,7 +432,7 @@ TEST(GltfImport, RefusalsNameThePlace) {
         {R"("buffers": [{"uri": "file%3A///etc/passwd", "byteLength": 1}])",
          "/buffers/0/uri is not relative, and only data URIs and relative paths are read"},
         {R"("buffers": [{"uri": "no%zz.bin", "byteLength": 1}])",
-         "/buffers/0/uri holds a '%' without two hexadecimal digits"},
+         "/buffers/0/uri is 'no%zz.bin', but there is no such file"},
         {R"("buffers": [{"uri": "missing.bin", "byteLength": 1}])",
          "/buffers/0/uri is 'missing.bin', but there is no such file"},
         {R"("buffers": [{"uri": "data:application/octet-stream;base64,AA*A", "byteLength": 1}])",

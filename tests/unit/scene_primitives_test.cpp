@@ -118,17 +118,6 @@ TEST(MeshTools, MirroredUvsSplitTheirSeam) {
     }
 }
 
-TEST(MeshTools, UnusedVerticesGo) {
-    Mesh mesh;
-    mesh.positions = {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {3, 0, 0}};
-    mesh.colors = {{0, 0, 0, 1}, {1, 0, 0, 1}, {2, 0, 0, 1}, {3, 0, 0, 1}};
-    mesh.indices = {3, 1, 3};
-    dropUnusedVertices(mesh);
-    EXPECT_EQ(mesh.indices, (std::vector<uint32_t>{0, 1, 0}));
-    EXPECT_EQ(mesh.positions, (std::vector<vec3>{{3, 0, 0}, {1, 0, 0}}));
-    EXPECT_EQ(mesh.colors[0].x, 3);
-}
-
 // --- scene and edits ---------------------------------------------------------------------------------------------
 
 Scene chain() { // a - b - c, and d at the root

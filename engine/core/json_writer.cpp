@@ -1,4 +1,4 @@
-#include "core/json_text.h"
+#include "core/json_writer.h"
 
 #include <charconv>
 #include <cmath>

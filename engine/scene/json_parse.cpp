@@ -1,4 +1,4 @@
-#include "scene/json_text.h"
+#include "scene/json_parse.h"
 
 #include <algorithm>
 #include <unordered_set>
