@@ -23,7 +23,7 @@ build: setup ## build everything, optimised, into build/release
 
 demo: build ## render the demo scene, without a display, to out/demo.png
 	@mkdir -p out
-	@$(BUILD)/bin/tyndall capture content/demo.scene.json --size 320x180 -o out/demo.png --report out/demo.json
+	@$(BUILD)/bin/tyndall capture content/demo.scene.json --size 640x360 -o out/demo.png --report out/demo.json
 	@echo "The picture is $(CURDIR)/out/demo.png; what it took is in $(CURDIR)/out/demo.json."
 	@if [ -n "$$DISPLAY$$WAYLAND_DISPLAY" ]; then \
 	    echo "To look around in it: $(BUILD)/bin/tyndall-editor content/demo.scene.json"; fi

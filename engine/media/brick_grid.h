@@ -34,6 +34,7 @@ struct BrickGrid {
     dmat4 worldFromIndex{
         1.0}; // the file's transform, any affine one ("world" is the medium's node space)
     float minimum = 0, maximum = 0;
+    double meanOfPositive = 0; // of all samples above 0; 0 where there are none
 
     [[nodiscard]] uint32_t slotCount() const {
         return uint32_t(samples.size() / kBrickSampleCount);

@@ -169,6 +169,25 @@ void SparseVoxels::placeTiles(BrickGrid& grid, std::vector<uint8_t>& touched) co
     }
 }
 
+namespace {
+
+double meanOfPositive(const BrickGrid& grid) {
+    double sum = 0, count = 0;
+    for (const float sample : grid.samples)
+        if (sample > 0) {
+            sum += double(sample);
+            ++count;
+        }
+    for (const Brick& brick : grid.bricks)
+        if (brick.slot == Brick::kNoSlot && brick.maximum > 0) {
+            sum += double(brick.maximum) * double(kBrickSampleCount);
+            count += double(kBrickSampleCount);
+        }
+    return count > 0 ? sum / count : 0;
+}
+
+} // namespace
+
 Result<BrickGrid> SparseVoxels::build(const dmat4& worldFromIndex) const {
     BrickGrid grid;
     grid.worldFromIndex = worldFromIndex;
@@ -213,6 +232,7 @@ Result<BrickGrid> SparseVoxels::build(const dmat4& worldFromIndex) const {
         grid.minimum = std::min(grid.minimum, brick.minimum);
         grid.maximum = std::max(grid.maximum, brick.maximum);
     }
+    grid.meanOfPositive = meanOfPositive(grid);
     return grid;
 }
 

@@ -13,6 +13,7 @@
 #include "plugin/frame_resources.h"
 #include "shared/march.h"
 #include "transport/media_kinds.h"
+#include "transport/scene_class.h"
 #include "transport/terms.h"
 
 namespace tyndall {
@@ -37,10 +38,7 @@ struct TechniqueInfo {
     MediaSet media;         // kinds of media in which it computes its terms in media: kAllMedia, or some
     uint32_t separatesMedia; // 1: it leaves out the kinds that are not in FrameInputs::kinds
     uint32_t automatic;      // 1: `auto` may choose it; 0: only on request
-    // Typical figures at medium quality, one frame, measured on software GL (docs/measured).
-    float cost;            // time of a frame over that of one with direct light alone
-    float errorOnSurfaces; // relmse of its terms on surfaces, of those in media
-    float errorInMedia;
+    Expectation expected[kSceneClassCount]; // measured on software GL: docs/measured/auto.md
 };
 
 struct PluginInfo {

@@ -1,6 +1,7 @@
 #include "plugin/registry.h"
 
 #include <algorithm>
+#include <array>
 #include <dlfcn.h>
 
 namespace tyndall::plugin {
@@ -94,8 +95,8 @@ void PluginRegistry::addTechniques(Plugin& plugin, SettingsRegistry& settings) {
         techniques_.push_back({{info.name, info.title, info.help, plugin.info().name, info.claims,
                                 info.automatic != 0,
                                 std::vector<TermSet>(info.sets, info.sets + info.setCount),
-                                info.media, info.separatesMedia != 0, info.cost,
-                                info.errorOnSurfaces, info.errorInMedia},
+                                info.media, info.separatesMedia != 0,
+                                std::to_array(info.expected)},
                                &technique});
     }
 }

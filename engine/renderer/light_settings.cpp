@@ -5,7 +5,7 @@ namespace {
 
 // clang-format off
 const SettingDesc kLights[] = {
-    TYNDALL_FLOAT(LightSettings, cutoff, "lights.cutoff", "Light cutoff", "", 0, 0.1, 0,
+    TYNDALL_FLOAT(LightSettings, cutoff, "lights.cutoff", "Light cutoff", "", 0, 0.1, 0.003,
                   "With many lights, limits the reach of each; the light dropped in all stays below this part of the light across the scene. Raise it for speed; 0 drops none."),
     TYNDALL_INT(LightSettings, clusterMinimum, "lights.clusterMinimum", "Lights without clusters", "lights", 0, 100000, 16,
                 "Up to this many lights every light is evaluated everywhere; above, each cluster of the view has a list. Raise it where lists cost more than they save."),
@@ -14,23 +14,23 @@ const SettingDesc kLights[] = {
     TYNDALL_INT(LightSettings, clusterSlices, "lights.clusterSlices", "Cluster slices", "", 1, 64, 24, "Clusters along the distance from the camera. More give shorter light lists and take more time and memory to build."),
     TYNDALL_INT(LightSettings, clusterCapacity, "lights.clusterCapacity", "Lights per cluster", "lights", 1, 1024, 128,
                 "Length of a cluster's light list; a cluster with more lights evaluates every light. Raise it for dense groups of lights; costs memory."),
-    TYNDALL_INT(LightSettings, environmentLights, "environment.lights", "Environment lights", "lights", 0, 256, 16,
+    TYNDALL_INT(LightSettings, environmentLights, "environment.lights", "Environment lights", "lights", 0, 256, 8,
                 "Directional lights with shadows that represent the environment. More are smoother and cost a shadow map each; 0 leaves surfaces and media unlit by it."),
-    TYNDALL_INT(LightSettings, mediumLights, "lights.media", "Lights per emissive medium", "lights", 0, 64, 4,
+    TYNDALL_INT(LightSettings, mediumLights, "lights.media", "Lights per emissive medium", "lights", 0, 64, 2,
                 "Lights with shadows that represent the emission of each medium, such as a fire. More are smoother and cost shadow maps; 0: the medium is visible but lights nothing."),
 };
 
 const SettingDesc kShadows[] = {
     TYNDALL_BOOL(ShadowSettings, enabled, "shadows.enabled", "Shadows", true, "Whether surfaces cast shadows. Off saves the time of shadow maps."),
-    TYNDALL_INT(ShadowSettings, maxLights, "shadows.maxLights", "Lights with shadows", "lights", 0, 256, 16,
+    TYNDALL_INT(ShadowSettings, maxLights, "shadows.maxLights", "Lights with shadows", "lights", 0, 256, 8,
                 "Lights of the scene that cast shadows, the most important for the view first; environment lights are extra. More cost a shadow map each."),
     TYNDALL_INT(ShadowSettings, resolution, "shadows.resolution", "Shadow map size", "px", 16, 8192, 2048,
                 "Side of a directional cascade and of a spot light's map, rounded down to a power of two. Larger maps have sharper shadows and cost memory and drawing time."),
-    TYNDALL_INT(ShadowSettings, localResolution, "shadows.localResolution", "Point shadow size", "px", 16, 8192, 1024,
+    TYNDALL_INT(ShadowSettings, localResolution, "shadows.localResolution", "Point shadow size", "px", 16, 8192, 512,
                 "Side of each of the six maps of a point, wide spot or rect light, rounded down to a power of two. Larger maps have sharper shadows and cost memory and drawing time."),
-    TYNDALL_INT(ShadowSettings, environmentResolution, "shadows.environmentResolution", "Environment shadow size", "px", 16, 8192, 1024,
+    TYNDALL_INT(ShadowSettings, environmentResolution, "shadows.environmentResolution", "Environment shadow size", "px", 16, 8192, 512,
                 "Side of an environment light's map, rounded down to a power of two. Larger maps have sharper shadows and cost memory and drawing time."),
-    TYNDALL_INT(ShadowSettings, cascades, "shadows.cascades", "Cascades", "", 1, 8, 4,
+    TYNDALL_INT(ShadowSettings, cascades, "shadows.cascades", "Cascades", "", 1, 8, 3,
                 "Shadow maps of a directional light: the last covers the whole scene, the others nearer parts of the view. More are sharper nearby and cost a map each."),
     TYNDALL_FLOAT(ShadowSettings, cascadeSplit, "shadows.cascadeSplit", "Cascade split", "", 0, 1, 0.8,
                   "How cascades divide the distance: 0 in equal lengths, 1 in equal ratios. Raise it for sharper shadows in the foreground; costs nothing."),

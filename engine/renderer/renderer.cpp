@@ -16,28 +16,6 @@ constexpr int kLargestPicture = 16384; // pixels along an edge: what every GL 4.
 
 } // namespace
 
-SceneTraits sceneTraits(const Scene& scene, bool mediaEnabled) {
-    SceneTraits traits;
-    traits.lights = maximumOf(scene.environment.radiance) > 0 || scene.environment.image;
-    const std::vector<bool> visible = scene.worldVisibility();
-    for (size_t i = 0; i < scene.nodes.size(); ++i) {
-        traits.surfaces |= visible[i] && !scene.nodes[i].meshes.empty();
-        traits.lights |= visible[i] && scene.nodes[i].light != kNone;
-    }
-    for (const Material& material : scene.materials)
-        traits.lights |= maximumOf(material.emissive) > 0;
-    if (!mediaEnabled) return traits;
-    traits.kinds = 0;
-    for (const Medium& medium : scene.media) {
-        if (maximumOf(medium.scattering) > 0) traits.kinds |= mediaSetOf(medium);
-        traits.media |= maximumOf(medium.extinction()) > 0 || maximumOf(medium.emission) > 0;
-        traits.scatteringMedia |= maximumOf(medium.scattering) > 0;
-        traits.lights |=
-            maximumOf(medium.emission) > 0 || (medium.temperature && medium.temperatureScale > 0);
-    }
-    return traits;
-}
-
 /// The cone around all that the camera sees.
 Viewer viewerAt(const CameraPose& pose, double aspect) {
     const dvec3 back(pose.worldFromCamera[2]);

@@ -15,6 +15,7 @@
 #include "framegraph/gl/executor.h"
 #include "gl/context.h"
 #include "plugin/plugin_api.h"
+#include "renderer/scene_traits.h"
 #include "scene/scene.h"
 #include "transport/plan.h"
 
@@ -76,9 +77,6 @@ struct InvalidTerms {
     int owner = kDirectPasses; // or an index into Renderer::techniques()
     uint32_t firstFrame = 0;
 };
-
-/// What the scene can have in a picture, as makePlan() asks for it. `mediaEnabled`: the setting media.enabled.
-SceneTraits sceneTraits(const Scene& scene, bool mediaEnabled);
 
 class Renderer {
 public:

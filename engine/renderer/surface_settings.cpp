@@ -9,7 +9,7 @@ namespace {
 const SettingDesc kGBuffer[] = {
     TYNDALL_FLOAT(GBufferSettings, textureLodBias, "gbuffer.textureLodBias", "Texture detail bias", "levels", -4, 4, 0,
                   "Added to the mip level of material textures: lower is sharper and may alias, higher is smoother. Averaged frames always use the finest level."),
-    TYNDALL_FLOAT(GBufferSettings, anisotropy, "gbuffer.anisotropy", "Anisotropic filter", "x", 1, 16, 4,
+    TYNDALL_FLOAT(GBufferSettings, anisotropy, "gbuffer.anisotropy", "Anisotropic filter", "x", 1, 16, 2,
                   "Largest ratio of length to width of the area that a texture lookup averages on slanted surfaces. Higher is sharper and slower; 1 is off."),
 };
 

@@ -41,23 +41,6 @@ double illuminance(const Light& light, double distance) {
     return luminance(light.color) * double(light.intensity) / squared;
 }
 
-/// The mean of all positive samples, 0 where there are none.
-double meanDensity(const BrickGrid& grid) {
-    double sum = 0, count = 0;
-    for (const float sample : grid.samples)
-        if (sample > 0) {
-            sum += double(sample);
-            ++count;
-        }
-    constexpr double kSamples = 9 * 9 * 9;
-    for (const Brick& brick : grid.bricks)
-        if (brick.slot == Brick::kNoSlot && brick.maximum > 0) {
-            sum += double(brick.maximum) * kSamples;
-            count += kSamples;
-        }
-    return count > 0 ? sum / count : 0;
-}
-
 } // namespace
 
 dquat rotationLookingAlong(const dvec3& forward) {
@@ -88,7 +71,12 @@ void supplyCamera(LoadedScene& loaded) {
     scene.cameras.push_back(std::move(camera));
     scene.activeCamera = int(scene.nodes.size());
     scene.nodes.push_back(std::move(node));
-    loaded.supplied.push_back("a camera that frames the scene");
+    const bool all = bounds.contains(scene.worldBounds().minimum) &&
+                     bounds.contains(scene.worldBounds().maximum);
+    loaded.supplied.push_back(all || scene.worldBounds().empty()
+                                  ? "a camera that frames the scene"
+                                  : "a camera that frames what stands together; other things "
+                                    "are far away from it");
 }
 
 void supplyLight(LoadedScene& loaded, const std::optional<SuppliedLamp>& lamp) {
@@ -160,7 +148,7 @@ Result<void> supplyMedium(LoadedScene& loaded, const std::filesystem::path& file
     const dvec3 extent =
         medium.density->indexBounds().transformed(medium.density->worldFromIndex).extent();
     const double largest = std::max({extent.x, extent.y, extent.z}),
-                 mean = meanDensity(*medium.density);
+                 mean = medium.density->meanOfPositive;
     if (largest > 0 && mean > 0 && std::isfinite(largest)) {
         const double extinction = std::clamp(kOpticalDepth / (largest * mean), 1e-30, 1e30);
         medium.scattering = vec3(float(kAlbedo * extinction));

@@ -23,7 +23,7 @@ struct SuppliedLamp {
 /// Returns where a lamp would light the interior.
 std::optional<SuppliedLamp> supplyCameraInside(LoadedScene& loaded);
 
-/// A perspective camera that sees all of Scene::worldBounds() from the front, a little from the right and from above;
+/// A perspective camera that sees the largest cluster of things (scene_reach.h) from the front, a little from the right and from above;
 /// nothing where there is an active camera.
 void supplyCamera(LoadedScene& loaded);
 

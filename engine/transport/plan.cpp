@@ -1,6 +1,7 @@
 #include "transport/plan.h"
 
 #include <algorithm>
+#include <cstdio>
 
 #include "core/settings.h"
 
@@ -171,50 +172,76 @@ Result<void> checkKinds(const FramePlan& plan, std::span<const Technique> techni
     return {};
 }
 
-/// Of the automatic techniques the one that computes most of `terms`; among equals the one with the least error.
-int bestFor(TermSet terms, TermSet possible, std::span<const Technique> techniques, bool inMedia) {
+/// A technique is not chosen by itself where a frame takes more than so many times one with direct light alone.
+constexpr float kMostCost = 10;
+
+/// What `auto` knows when it chooses for surfaces or for media.
+struct Choice {
+    TermSet terms, possible;
+    SceneClass scene;
+    bool inMedia;
+};
+
+float errorOf(const Technique& technique, const Choice& choice) {
+    const Expectation& expected = technique.expected[size_t(choice.scene)];
+    return choice.inMedia ? expected.errorInMedia : expected.errorOnSurfaces;
+}
+
+/// Of the techniques that `auto` may choose, are quick enough and compute most of the terms, the one with the least error.
+int bestFor(const Choice& choice, std::span<const Technique> techniques) {
     int best = kNobody, most = 0;
-    float least = 0;
     for (size_t i = 0; i < techniques.size(); ++i) {
         const Technique& technique = techniques[i];
-        const TermSet share = technique.claims & terms;
+        const TermSet share = technique.claims & choice.terms;
         const int count = __builtin_popcount(share);
-        const float error = inMedia ? technique.errorInMedia : technique.errorOnSurfaces;
-        if (!technique.automatic || count == 0 || !technique.accepts(share, possible)) continue;
-        if (count < most || (count == most && !(error < least))) continue;
+        if (!technique.automatic || count == 0 || !technique.accepts(share, choice.possible) ||
+            technique.expected[size_t(choice.scene)].cost > kMostCost)
+            continue;
+        if (count < most ||
+            (count == most && !(errorOf(technique, choice) < errorOf(techniques[size_t(best)], choice))))
+            continue;
         best = int(i);
         most = count;
-        least = error;
     }
     return best;
 }
 
+/// "0.02", "0.4".
+std::string shortNumber(float value) {
+    char text[32];
+    std::snprintf(text, sizeof text, "%.1g", double(value));
+    return text;
+}
+
 /// Surfaces may have their indirect light from one technique, and media from another.
-void chooseAndExplain(FramePlan& plan, std::span<const Technique> techniques) {
+void chooseAndExplain(FramePlan& plan, std::span<const Technique> techniques, SceneClass scene) {
     const TermSet indirect = plan.possible & plan.wanted & ~kDirectTerms;
     const TermSet receivers[] = {kIndirectOnSurfaces & indirect, kIndirectInMedia & indirect};
     std::string chosen;
     for (const bool inMedia : {false, true}) {
-        const TermSet terms = receivers[inMedia];
-        const int choice = bestFor(terms, plan.possible, techniques, inMedia);
-        if (choice == kNobody) continue;
-        const Technique& technique = techniques[size_t(choice)];
+        const Choice choice{receivers[inMedia], plan.possible, scene, inMedia};
+        const int best = bestFor(choice, techniques);
+        if (best == kNobody) continue;
+        const Technique& technique = techniques[size_t(best)];
         const TermSet receiver = inMedia ? kIndirectInMedia : kIndirectOnSurfaces;
-        give(plan, technique.claims & plan.wanted & receiver, choice, technique.media);
+        give(plan, technique.claims & plan.wanted & receiver, best, technique.media);
         if (plan.technique.empty())
             plan.technique = technique.name;
         else if (plan.technique != technique.name)
             plan.technique += "+" + technique.name;
-        chosen += (chosen.empty() ? "'" : ", '") + technique.name + "' computes " +
-                  termNames(technique.claims & terms);
+        chosen += (chosen.empty() ? "" : "; ") + technique.name +
+                  (inMedia ? " in media (error about " : " on surfaces (error about ") +
+                  shortNumber(errorOf(technique, choice)) + ")";
     }
     if (plan.technique.empty()) plan.technique = "none";
-    plan.why = !chosen.empty()  ? "auto: " + chosen + " of the indirect terms that this scene has"
+    plan.why = !chosen.empty() ? "auto: " + chosen + ": measured best among the quick ones for " +
+                                     sceneClassText(scene)
                : indirect == 0 ? "auto: the scene has direct light alone"
                                : "auto: no technique here computes " + termNames(indirect);
 }
 
-Result<void> decide(FramePlan& plan, std::string_view gi, std::span<const Technique> techniques) {
+Result<void> decide(FramePlan& plan, std::string_view gi, std::span<const Technique> techniques,
+                    SceneClass scene) {
     give(plan, kDirectTerms, kDirectPasses);
     if (gi.find('=') != std::string_view::npos) {
         plan.technique = std::string(gi);
@@ -227,7 +254,7 @@ Result<void> decide(FramePlan& plan, std::string_view gi, std::span<const Techni
         return {};
     }
     if (gi == "auto") {
-        chooseAndExplain(plan, techniques);
+        chooseAndExplain(plan, techniques, scene);
         return {};
     }
     const int owner = findTechnique(gi, techniques);
@@ -288,6 +315,12 @@ MediaSet FramePlan::missingIn(Term term) const {
     return bit(term) & kTermsInMedia ? missingKinds & kinds : missingKinds;
 }
 
+SceneClass SceneTraits::sceneClass() const {
+    if (!scatteringMedia) return SceneClass::Surfaces;
+    if (!surfaces) return SceneClass::MediaAlone;
+    return opticalDepth > kDenseFrom ? SceneClass::Dense : SceneClass::Thin;
+}
+
 TermSet possibleTerms(const SceneTraits& traits) {
     if (!traits.lights) return 0;
     TermSet set = bit(Term::LE);
@@ -319,7 +352,7 @@ Result<FramePlan> makePlan(std::string_view gi, TermSet wanted,
     plan.wanted = wanted;
     plan.possible = possibleTerms(traits);
     plan.kinds = traits.scatteringMedia ? traits.kinds : 0;
-    if (Result<void> done = decide(plan, gi, techniques); !done.ok()) return done.error();
+    if (Result<void> done = decide(plan, gi, techniques, traits.sceneClass()); !done.ok()) return done.error();
     if (Result<void> fits = checkSets(plan, techniques); !fits.ok()) return fits.error();
     if (Result<void> fits = checkKinds(plan, techniques); !fits.ok()) return fits.error();
     for (uint32_t i = 0; i < kTermCount; ++i) {

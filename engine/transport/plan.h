@@ -8,6 +8,7 @@
 
 #include "core/result.h"
 #include "transport/media_kinds.h"
+#include "transport/scene_class.h"
 #include "transport/terms.h"
 
 namespace tyndall {
@@ -24,8 +25,7 @@ struct Technique {
     std::vector<TermSet> sets;
     MediaSet media = kAllMedia; // kinds of media in which it computes its terms in media
     bool separatesMedia = true; // it can leave out some of these kinds
-    // What `auto` judges it by: typical figures at medium quality, see plugin::TechniqueInfo.
-    float cost = 1, errorOnSurfaces = 1, errorInMedia = 1;
+    std::array<Expectation, kSceneClassCount> expected{}; // what `auto` chooses by
 
     /// Can it compute exactly these terms, of those that are `possible` at all?
     [[nodiscard]] bool accepts(TermSet terms, TermSet possible) const;
@@ -38,6 +38,9 @@ struct SceneTraits {
     bool scatteringMedia = false; // any medium that scatters
     bool lights = false;          // lights, emitters or an environment
     MediaSet kinds = kAllMedia;   // of the media that scatter
+    double opticalDepth = 0;      // mean of the scattering media, across them; 0 without
+
+    [[nodiscard]] SceneClass sceneClass() const;
 };
 
 inline constexpr int kNobody = -1;

@@ -144,6 +144,8 @@ void LightsTest::SetUp() {
     lights_.emplace();
     settings_ = {};
     lights_->registerSettings(settings_);
+    settings_.applyPreset(Quality::High);
+    lights_->lightSettings().cutoff = 0; // every light everywhere
     lights_->shadowSettings().resolution = 512;
     lights_->shadowSettings().localResolution = 512;
     lights_->shadowSettings().environmentResolution = 256;
@@ -169,6 +171,8 @@ void LightsTest::forgetEverything() {
     lights_.emplace();
     settings_ = {};
     lights_->registerSettings(settings_);
+    settings_.applyPreset(Quality::High);
+    lights_->lightSettings().cutoff = 0; // every light everywhere
     lights_->lightSettings() = lightSettings;
     lights_->shadowSettings() = shadowSettings;
 }

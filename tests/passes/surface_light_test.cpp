@@ -93,6 +93,7 @@ protected:
         media_->registerSettings(registry_);
         lights_.emplace();
         lights_->registerSettings(registry_);
+        registry_.applyPreset(Quality::High);
         registry_.add({gbufferSettings(), &gbufferSettings_});
         registry_.add({surfaceLightSettings(), &settings_});
         // Small maps: these tests are about light, and 16 maps a frame of the environment's lights take most of their time.
@@ -137,7 +138,9 @@ protected:
         expectDone(blended_->update(*surfaces_, view));
         expectDone(media_->update(scene, dvec3(0)));
         fg::FrameGraph& graph = executor_->beginFrame();
-        lights_->update({&scene, dvec3(0), surfaces_->bounds(), &view});
+        std::vector<Bounds> casters;
+        for (const DrawItem& item : surfaces_->items()) casters.push_back(item.bounds);
+        lights_->update({&scene, dvec3(0), casters, scene.worldBounds(), scene.worldBounds(), &view});
         SurfaceLightInputs inputs;
         inputs.view = view;
         inputs.gbuffer = addGBufferPass(graph, *surfaces_, view, gbufferSettings_);

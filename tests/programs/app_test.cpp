@@ -77,6 +77,14 @@ TEST(App, ARenderItsReportAndItsErrorAgainstTheReferenceComeFromCode) {
     EXPECT_EQ(compared, 2);
 }
 
+TEST(App, TheDefaultsAreThePresetMedium) {
+    const auto session = open(foggyOptions());
+    SettingsRegistry& settings = session->renderer().settings();
+    settings.resetAll();
+    settings.applyPreset(Quality::Medium);
+    EXPECT_THAT(settings.differences(), ::testing::IsEmpty());
+}
+
 TEST(App, TheTechniqueIsASettingLikeAnyOther) {
     RenderOptions options = foggyOptions();
     const auto technique = [&](const std::vector<std::string>& assignments, const std::string& gi) {

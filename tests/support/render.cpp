@@ -51,7 +51,12 @@ TestRenderer::~TestRenderer() {
 Rendered TestRenderer::render(const Scene& scene, const RenderOptions& options) {
     context_.makeCurrent();
     renderer_->settings().resetAll();
-    if (options.quality) renderer_->settings().applyPreset(*options.quality);
+    if (options.quality) {
+        renderer_->settings().applyPreset(*options.quality);
+    } else {
+        renderer_->settings().applyPreset(Quality::High);
+        CHECK(renderer_->settings().assign("lights.cutoff=0").ok(), "a setting of the renderer");
+    }
     if (Result<void> done = renderer_->settings().set("gi.technique", options.gi); !done)
         throw std::runtime_error(done.message());
     for (const std::string& setting : options.settings)

@@ -17,7 +17,7 @@ struct RenderOptions {
     int width = 32, height = 32;
     int frames = 1;                    // averaged when above 1 (converge mode)
     bool converge = false;             // even for one frame
-    std::optional<Quality> quality;    // a preset, before the settings
+    std::optional<Quality> quality;    // a preset, before the settings; none: high, with every light everywhere
     std::vector<std::string> settings; // KEY=VALUE
     std::string gi = "none";
     TermSet terms = kAllTerms;

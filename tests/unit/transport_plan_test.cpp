@@ -195,8 +195,8 @@ TEST(TransportPlan, AutoMayTakeSurfacesFromOneAndMediaFromAnother) {
 TEST(TransportPlan, AmongEqualsAutoTakesTheOneWithTheLeastError) {
     std::vector<Technique> techniques = {technique("rough", kIndirectInMedia),
                                          technique("fine", kIndirectInMedia)};
-    techniques[0].errorInMedia = 0.2f;
-    techniques[1].errorInMedia = 0.1f;
+    for (Expectation& e : techniques[0].expected) e.errorInMedia = 0.2f;
+    for (Expectation& e : techniques[1].expected) e.errorInMedia = 0.1f;
     EXPECT_EQ(makePlan("auto", kAllTerms, techniques, kEverything).value().technique, "fine");
 }
 

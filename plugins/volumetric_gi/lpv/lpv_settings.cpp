@@ -10,22 +10,22 @@ constexpr const char* kAxisNames[] = {"x", "y", "z"};
 
 const SettingDesc kLpvSettings[] = {
     TYNDALL_INT(
-        LpvSettings, resolution, "gi.lpv.resolution", "Lattice cells", "", 4, 64, 32,
+        LpvSettings, resolution, "gi.lpv.resolution", "Lattice cells", "", 4, 64, 16,
         "Cells along the longest side of the finest lattice. More resolve finer detail; time and memory grow with the cube."),
     TYNDALL_INT(
-        LpvSettings, cascades, "gi.lpv.cascades", "Nested lattices", "", 1, 4, 4,
+        LpvSettings, cascades, "gi.lpv.cascades", "Nested lattices", "", 1, 4, 3,
         "Maximum number of lattices: one around the objects of the scene, coarser ones around it out to the landscape. More reach farther and cost a lattice each."),
     TYNDALL_FLOAT(
         LpvSettings, extent, "gi.lpv.extent", "Finest extent", "m", 0.0f, 1e6f, 0.0f,
         "Longest side of the finest lattice; if it is shorter than the scene, the lattice follows the camera. Shorter is sharper nearby; 0 fits the scene."),
     TYNDALL_INT(
-        LpvSettings, steps, "gi.lpv.steps", "Steps per frame", "", 2, 4096, 256,
+        LpvSettings, steps, "gi.lpv.steps", "Steps per frame", "", 2, 4096, 96,
         "Maximum propagation steps in a frame; they end early when light has settled, else continue in the next frame. More settle sooner and cost time."),
     TYNDALL_FLOAT(
-        LpvSettings, tolerance, "gi.lpv.tolerance", "Settled below", "", 0.0f, 1.0f, 0.002f,
+        LpvSettings, tolerance, "gi.lpv.tolerance", "Settled below", "", 0.0f, 1.0f, 0.02,
         "Steps end when the estimated remaining light, over the light that is there, is below this. Lower is more accurate and takes more steps."),
     TYNDALL_INT(
-        LpvSettings, rsmSize, "gi.lpv.rsmSize", "Shadow map size", "texels", 16, 2048, 128,
+        LpvSettings, rsmSize, "gi.lpv.rsmSize", "Shadow map size", "texels", 16, 2048, 96,
         "Side of each reflective shadow map. Larger maps inject light more evenly and cost time with their area."),
     TYNDALL_INT(
         LpvSettings, rsmLights, "gi.lpv.rsmLights", "Lights", "", 1, 1024, 64,
@@ -53,12 +53,12 @@ const SettingDesc kLpvSettings[] = {
 };
 
 constexpr PresetEntry kLpvPresets[] = {
-    {Quality::Low, "gi.lpv.resolution", "16"},      {Quality::Low, "gi.lpv.steps", "96"},
-    {Quality::Low, "gi.lpv.cascades", "2"},         {Quality::Low, "gi.lpv.tolerance", "0.01"},
+    {Quality::Low, "gi.lpv.resolution", "12"},      {Quality::Low, "gi.lpv.steps", "64"},
+    {Quality::Low, "gi.lpv.cascades", "2"},         {Quality::Low, "gi.lpv.tolerance", "0.02"},
     {Quality::Low, "gi.lpv.rsmSize", "64"},         {Quality::Low, "gi.lpv.rsmRectPoints", "1"},
-    {Quality::Low, "gi.lpv.march", "quarter"},      {Quality::Medium, "gi.lpv.resolution", "24"},
-    {Quality::Medium, "gi.lpv.steps", "128"},       {Quality::Medium, "gi.lpv.cascades", "3"},
-    {Quality::Medium, "gi.lpv.tolerance", "0.005"}, {Quality::Medium, "gi.lpv.rsmSize", "96"},
+    {Quality::Low, "gi.lpv.march", "quarter"},      {Quality::Medium, "gi.lpv.resolution", "16"},
+    {Quality::Medium, "gi.lpv.steps", "96"},       {Quality::Medium, "gi.lpv.cascades", "3"},
+    {Quality::Medium, "gi.lpv.tolerance", "0.02"}, {Quality::Medium, "gi.lpv.rsmSize", "96"},
     {Quality::Medium, "gi.lpv.rsmRectPoints", "4"}, {Quality::Medium, "gi.lpv.march", "half"},
     {Quality::High, "gi.lpv.resolution", "32"},     {Quality::High, "gi.lpv.steps", "256"},
     {Quality::High, "gi.lpv.cascades", "4"},        {Quality::High, "gi.lpv.tolerance", "0.002"},

@@ -182,10 +182,8 @@ const plugin::TechniqueInfo& LpvTechnique::info() const {
         .setCount = uint32_t(std::size(kSets)),
         .media = kAllMedia,
         .separatesMedia = 1,
-        .automatic = 0, // seconds a frame without a GPU: only on request
-        .cost = 3,
-        .errorOnSurfaces = 0.15f,
-        .errorInMedia = 0.03f};
+        .automatic = 1,
+        .expected = {{7, 0.1f, 1}, {4, 0.15f, 0.03f}, {4, 0.15f, 0.03f}, {5, 1, 0.4f}}};
     return kInfo;
 }
 

@@ -8,7 +8,7 @@ namespace {
 
 const SettingDesc kOctavesSettings[] = {
     TYNDALL_INT(
-        OctavesSettings, count, "gi.octaves.count", "Octaves", "", 0, 16, 7,
+        OctavesSettings, count, "gi.octaves.count", "Octaves", "", 0, 16, 5,
         "Octaves beyond single scattering. More brighten the inside of dense media and cost march time; 0 turns the technique off."),
     TYNDALL_FLOAT(
         OctavesSettings, scatteringFactor, "gi.octaves.scatteringFactor", "Scattering factor", "", 0,
@@ -45,9 +45,7 @@ const plugin::TechniqueInfo& OctavesTechnique::info() const {
         .media = kAllMedia,
         .separatesMedia = 1,
         .automatic = 1,
-        .cost = 4,
-        .errorOnSurfaces = 1,
-        .errorInMedia = 0.44f};
+        .expected = {{1, 1, 1}, {4, 1, 0.44f}, {4, 1, 0.44f}, {9, 1, 0.05f}}};
     return kInfo;
 }
 

@@ -11,10 +11,10 @@ constexpr const char* kShowNames[] = {"nothing", "lights", "map", "atlas", "lost
 
 const SettingDesc kVplSettings[] = {
     TYNDALL_INT(
-        VplSettings, walks, "gi.vpl.walks", "Walks", "", 1, 65536, 512,
+        VplSettings, walks, "gi.vpl.walks", "Walks", "", 1, 65536, 128,
         "Random walks from the lights; each leaves a virtual light wherever it scatters. More are less noisy; maps and gathering take time in proportion."),
     TYNDALL_INT(
-        VplSettings, candidates, "gi.vpl.candidates", "Candidates per walk", "", 1, 64, 16,
+        VplSettings, candidates, "gi.vpl.candidates", "Candidates per walk", "", 1, 64, 1,
         "Traces this many times as many walks and keeps the virtual lights of highest importance for the view. More are less noisy and cost processor time; 1 keeps all lights."),
     TYNDALL_INT(
         VplSettings, renewed, "gi.vpl.renewed", "Walks renewed per frame", "", 0, 65536, 0,
@@ -32,13 +32,13 @@ const SettingDesc kVplSettings[] = {
         VplSettings, points, "gi.vpl.points", "Points per map", "", 64, 65536, 4096,
         "Points of surfaces splatted into each visibility map, for maps from points. More leave fewer gaps and cost time."),
     TYNDALL_INT(
-        VplSettings, mapSide, "gi.vpl.mapSide", "Visibility map size", "texels", 0, 512, 64,
+        VplSettings, mapSide, "gi.vpl.mapSide", "Visibility map size", "texels", 0, 512, 24,
         "Side of a virtual light's visibility map. Larger maps find thinner occluders and cost time and memory with their area; 0: no shadows."),
     TYNDALL_INT(
         VplSettings, depthSide, "gi.vpl.depthSide", "Depth map size", "texels", 0, 64, 16,
         "Side of a virtual light's map of the optical depth of grids. Larger maps have sharper shadows in smoke and cost time and memory with their area; 0 marches grids for each pair, which is slow."),
     TYNDALL_INT(
-        VplSettings, samples, "gi.vpl.samples", "Points per ray", "", 1, 1024, 24,
+        VplSettings, samples, "gi.vpl.samples", "Points per ray", "", 1, 1024, 16,
         "Points along a ray through media that gather virtual lights. More are less noisy; time grows in proportion."),
     TYNDALL_ENUM(
         VplSettings, compensation, "gi.vpl.compensation", "Bias compensation", kCompensationNames,

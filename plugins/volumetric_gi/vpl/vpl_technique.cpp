@@ -311,10 +311,8 @@ const plugin::TechniqueInfo& VplTechnique::info() const {
         .setCount = 0,
         .media = kAllMedia,
         .separatesMedia = 1,
-        .automatic = 0,
-        .cost = 6,
-        .errorOnSurfaces = 0.1f,
-        .errorInMedia = 0.05f};
+        .automatic = 1,
+        .expected = {{12, 0.1f, 1}, {20, 0.1f, 0.05f}, {20, 0.15f, 0.05f}, {15, 1, 0.19f}}};
     return kInfo;
 }
 
