@@ -21,7 +21,7 @@ build: setup ## build everything, optimised, into build/release
 	@cmake --preset release $(CMAKE_FLAGS)
 	@cmake --build $(BUILD) --parallel $(JOBS)
 
-demo: build ## render the demo scene, without a display, to out/demo.png
+demo: build ## render the demo scene with indirect light, without a display, to out/demo.png
 	@mkdir -p out
 	@$(BUILD)/bin/tyndall capture content/demo.scene.json --size 640x360 -o out/demo.png --report out/demo.json
 	@echo "The picture is $(CURDIR)/out/demo.png; what it took is in $(CURDIR)/out/demo.json."

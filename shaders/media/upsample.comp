@@ -1,5 +1,6 @@
 // The direct march from one ray for 2×2 or 4×4 pixels to every pixel. A pixel that no ray fits is marched again on its own.
 #define MARCH_PHASE_GROUPS PHASE_GROUPS
+#define MARCH_GATHERS (IN_SCATTER != 0)
 #include "media/march.glsl"
 #include "media/spread_rays.glsl"
 

@@ -11,6 +11,7 @@ expectations (TechniqueInfo::expected).
 import json
 import os
 import pathlib
+import re
 import statistics
 import subprocess
 import sys
@@ -61,6 +62,9 @@ class Bench(harness.Bench):
             sys.exit(f"{' '.join(map(str, command))}: exit status {process.returncode}")
         return usage.ru_utime + usage.ru_stime
 
+    def layers(self, picture):
+        return set(re.findall(r"^layer '(\w+)'", self.run("info", picture), re.M))
+
     def measure(self, name, scene, reference, gi, size):
         """Kept in a file: whole, on surfaces and in media (relmse, energy), seconds a frame, what it said."""
         kept = self.out / f"{name}-{gi}-{size}.json"
@@ -74,8 +78,9 @@ class Bench(harness.Bench):
         said = json.loads(report.read_text())
         result = {"seconds": (three - one) / 2, "technique": said["technique"], "why": said["why"], "missing": said["missing"],
                   "whole": self.compare(picture, reference)}
+        layers = self.layers(picture) & self.layers(reference)
         for receiver, terms in (("surfaces", SURFACES), ("media", MEDIA)):
-            rendered = [term for term in terms.split(",") if term in said["claims"]]
+            rendered = [term for term in terms.split(",") if term in said["claims"] and term in layers]
             result[receiver] = self.compare(picture, reference, ",".join(rendered)) if rendered else (1, 0)
         kept.write_text(json.dumps(result))
         return result

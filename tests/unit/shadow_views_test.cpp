@@ -17,6 +17,7 @@ ShadowSettings defaultSettings() {
     ShadowSettings settings{};
     SettingsRegistry registry;
     registry.add({shadowSettingsTable(), &settings});
+    settings.cascades = 4;
     return settings;
 }
 

@@ -53,7 +53,7 @@ const SettingDesc kLpvSettings[] = {
 };
 
 constexpr PresetEntry kLpvPresets[] = {
-    {Quality::Low, "gi.lpv.resolution", "12"},      {Quality::Low, "gi.lpv.steps", "64"},
+    {Quality::Low, "gi.lpv.resolution", "16"},      {Quality::Low, "gi.lpv.steps", "96"},
     {Quality::Low, "gi.lpv.cascades", "2"},         {Quality::Low, "gi.lpv.tolerance", "0.02"},
     {Quality::Low, "gi.lpv.rsmSize", "64"},         {Quality::Low, "gi.lpv.rsmRectPoints", "1"},
     {Quality::Low, "gi.lpv.march", "quarter"},      {Quality::Medium, "gi.lpv.resolution", "16"},
