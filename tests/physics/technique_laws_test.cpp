@@ -93,6 +93,28 @@ TEST_P(TechniqueLaws, AMediumThatIsNothingChangesNothing) {
     }
 }
 
+/// Fog that glows, seen or hidden.
+std::string glowingFog(bool visible) {
+    return fmt::format(
+        R"({{"name": "fog", "visible": {}, "medium": {{"type": "homogeneous", "shape": "box", "size": [2, 2, 2], "scattering": [0.9, 0.9, 0.9],
+        "absorption": [0.1, 0.1, 0.1], "emission": [3, 2, 1]}}, "translation": [0, 1.5, 0]}},)",
+        visible);
+}
+
+TEST_P(TechniqueLaws, MediaThatAreSwitchedOffAreNotThere) {
+    RenderOptions averaged = options();
+    averaged.frames = 2;
+    const auto pixels = [&](bool visible) {
+        return sharedRenderer()
+            .render(sceneFromJson(corner(50, glowingFog(visible))), averaged)
+            .beauty.pixels;
+    };
+    const std::vector<float> hidden = pixels(false);
+    EXPECT_NE(pixels(true), hidden);
+    averaged.settings = {"media.enabled=false"};
+    EXPECT_EQ(pixels(true), hidden);
+}
+
 TEST_P(TechniqueLaws, AMediumThatScattersNothingHasNoLight) {
     EXPECT_EQ(brightest(lightFrom(render(corner(50, veil(0.2))), kIndirectInMedia)), 0);
 }
