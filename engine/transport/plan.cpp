@@ -230,7 +230,7 @@ void chooseAndExplain(FramePlan& plan, std::span<const Technique> techniques, Sc
         else if (plan.technique != technique.name)
             plan.technique += "+" + technique.name;
         chosen += (chosen.empty() ? "" : "; ") + technique.name +
-                  (inMedia ? " in media (error about " : " on surfaces (error about ") +
+                  (inMedia ? " in media (relmse about " : " on surfaces (relmse about ") +
                   shortNumber(errorOf(technique, choice)) + ")";
     }
     if (plan.technique.empty()) plan.technique = "none";

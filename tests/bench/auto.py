@@ -22,6 +22,7 @@ from harness import MEDIA, SURFACES  # noqa: E402
 from tables import ROOT, commit_date, machine, table  # noqa: E402
 
 TECHNIQUES = ("octaves", "lpv", "vpl")
+LEAST_SHARE = 0.05  # of the picture's light: the error of less says nothing
 MOST_COST = 10  # times the frame with direct light alone: engine/transport/plan.cpp
 ANEW = ("--set", "gi.lpv.keep=false", "--set", "gi.vpl.keep=false")
 
@@ -66,6 +67,11 @@ class Bench(harness.Bench):
         """Terms that it has, alone or as part of a sum: "LSSE+LVSE"."""
         return {term for layer in re.findall(r"^layer '([\w+]+)'", self.run("info", picture), re.M) for term in layer.split("+")}
 
+    def share(self, reference, terms):
+        """Part of the reference's light that these terms have."""
+        means = dict(re.findall(r"^layer '([\w()]+)': .*mean ([-+.\de]+)", self.run("info", reference), re.M))
+        return sum(float(means.get(term, 0)) for term in terms.split(",")) / float(means["(main)"])
+
     def measure(self, name, scene, reference, gi, size):
         """Kept in a file: whole, on surfaces and in media (relmse, energy), seconds a frame, what it said."""
         kept = self.out / f"{name}-{gi}-{size}.json"
@@ -100,19 +106,24 @@ def main():
         reference = bench.reference_of(scene, size)
         found = {gi: bench.measure(name, scene, reference, gi, arguments.size) for gi in ("none", *TECHNIQUES, "auto")}
         base = found["none"]["seconds"]
+        shares = {"surfaces": bench.share(reference, SURFACES), "media": bench.share(reference, MEDIA)}
         kind = found["auto"]["why"].rsplit(" for ", 1)[-1]
         for gi, r in found.items():
             cost = r["seconds"] / base
             rows.append([name, gi, harness.pair(r["whole"]), "" if gi == "none" else harness.pair(r["surfaces"]),
                          "" if gi == "none" else harness.pair(r["media"]), f"{1000 * r['seconds']:.0f}", f"{cost:.1f}"])
-            by_kind.setdefault((gi, kind), []).append((cost, r["surfaces"][0], r["media"][0]))
+            columns = by_kind.setdefault((gi, kind), ([], [], []))
+            columns[0].append(cost)
+            for column, receiver in ((1, "surfaces"), (2, "media")):
+                if shares[receiver] >= LEAST_SHARE:
+                    columns[column].append(r[receiver][0])
         quick = {gi: found[gi] for gi in TECHNIQUES if found[gi]["seconds"] <= MOST_COST * base} or {gi: found[gi] for gi in TECHNIQUES}
         best = min(quick, key=lambda gi: quick[gi]["whole"][0])
         auto = found["auto"]
         choices.append([name, auto["technique"], f"{auto['whole'][0]:.4f}", f"{1000 * auto['seconds']:.0f}", f"{auto['seconds'] / base:.1f}",
                         best, f"{quick[best]['whole'][0]:.4f}", f"{auto['whole'][0] / quick[best]['whole'][0]:.2f}"])
-    expectations = [[gi, kind, *(f"{statistics.median(column):.2g}" for column in zip(*values))]
-                    for (gi, kind), values in sorted(by_kind.items()) if gi in TECHNIQUES]
+    expectations = [[gi, kind, *(f"{statistics.median(column):.2g}" if column else "" for column in columns)]
+                    for (gi, kind), columns in sorted(by_kind.items()) if gi in TECHNIQUES]
     arguments.page.write_text(f"""# What `--gi auto` chooses
 
 Error and time of every technique on ten scenes, at medium quality, in one frame. Made by `tests/bench/auto.py` from a release build of
@@ -130,7 +141,7 @@ relmse and energy of the whole picture, and of those terms on surfaces and in me
 
 {table(["scene", "technique", "picture", "surfaces", "media", "ms", "cost"], rows)}
 ## By kind of scene
-Medians, for `TechniqueInfo::expected`.
+Medians, for `TechniqueInfo::expected`; of errors where the terms have a twentieth of the picture's light or more.
 
 {table(["technique", "kind of scene", "cost", "error on surfaces", "error in media"], expectations)}""")
     print(f"wrote {arguments.page}")

@@ -183,7 +183,7 @@ const plugin::TechniqueInfo& LpvTechnique::info() const {
         .media = kAllMedia,
         .separatesMedia = 1,
         .automatic = 1,
-        .expected = {{7, 0.1f, 1}, {4, 0.15f, 0.03f}, {4, 0.15f, 0.03f}, {5, 1, 0.4f}}};
+        .expected = {{7, 0.05f, 1}, {3, 0.18f, 0.06f}, {2, 2, 0.25f}, {2, 1, 1}}};
     return kInfo;
 }
 

@@ -312,7 +312,7 @@ const plugin::TechniqueInfo& VplTechnique::info() const {
         .media = kAllMedia,
         .separatesMedia = 1,
         .automatic = 1,
-        .expected = {{12, 0.1f, 1}, {20, 0.1f, 0.05f}, {20, 0.15f, 0.05f}, {15, 1, 0.19f}}};
+        .expected = {{11, 0.1f, 1}, {13, 1, 0.24f}, {6, 2.9f, 0.66f}, {14, 1, 0.53f}}};
     return kInfo;
 }
 
