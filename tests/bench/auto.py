@@ -126,7 +126,7 @@ def main():
                     for (gi, kind), columns in sorted(by_kind.items()) if gi in TECHNIQUES]
     arguments.page.write_text(f"""# What `--gi auto` chooses
 
-Error and time of every technique on ten scenes, at medium quality, in one frame. Made by `tests/bench/auto.py` from a release build of
+This page measures error and time of every technique on ten scenes, at medium quality, in one frame. Made by `tests/bench/auto.py` from a release build of
 {commit_date()}, on {machine()} with llvmpipe.
 
 `auto` chooses, for surfaces and for media, the technique with the least error that was measured in scenes of the kind, among those whose frame takes at most
