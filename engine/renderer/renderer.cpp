@@ -39,12 +39,14 @@ void Renderer::Impl::registerSettings() {
 void Renderer::Impl::updateReach(const Viewer& viewer) {
     const SceneVersions& now = scene->versions;
     const auto parts = [](const SceneVersions& v) {
-        return std::tie(v.structure, v.transforms, v.meshes, v.media, v.lights);
+        return std::tie(v.structure, v.transforms, v.meshes, v.materials, v.media, v.lights, v.environment);
     };
     const bool mediaOff = !media.settings().enabled;
-    if (parts(now) != parts(seenClusters) || mediaOff != seenMediaOff) {
+    if (!knowsScene || parts(now) != parts(seenScene) || mediaOff != seenMediaOff) {
         clusters = findClusters(*scene, mediaOff);
-        seenClusters = now;
+        traits = sceneTraits(*scene, !mediaOff);
+        seenScene = now;
+        knowsScene = true;
         seenMediaOff = mediaOff;
     }
     reach = reachOf(clusters, viewer);
@@ -119,7 +121,7 @@ SettingsRegistry& Renderer::settings() { return impl_->settings; }
 std::span<const Technique> Renderer::techniques() const { return impl_->techniques; }
 
 Result<void> Renderer::setScene(const Scene& scene) {
-    if (impl_->scene != &scene) impl_->seenClusters = {};
+    impl_->knowsScene = false;
     impl_->scene = &scene;
     impl_->average = {};
     return {};
@@ -242,8 +244,7 @@ Result<FrameResult> Renderer::Impl::renderFrame(const FrameRequest& request) {
     r.shaders.pollChanges();
     if (Result<void> updated = r.updateScene(request, *pose); !updated) return updated.error();
     const Result<FramePlan> plan =
-        makePlan(r.techniqueSettings.technique.view(), request.terms, r.techniques,
-                 sceneTraits(*r.scene, r.media.settings().enabled));
+        makePlan(r.techniqueSettings.technique.view(), request.terms, r.techniques, r.traits);
     if (!plan) return plan.error();
     r.fillOrder(request, *plan);
     r.markOutputs(r.record(request), request);

@@ -55,8 +55,9 @@ struct Renderer::Impl {
 
     const Scene* scene = nullptr;
     SceneClusters clusters;
-    SceneVersions seenClusters; // of what clusters was made from
-    bool seenMediaOff = false;
+    SceneTraits traits;
+    SceneVersions seenScene; // of what clusters and traits were made from
+    bool knowsScene = false, seenMediaOff = false;
     SceneReach reach;           // of this frame's view
     dvec3 renderOrigin{0};
     std::vector<Bounds> surfaceBounds;

@@ -22,9 +22,9 @@ constexpr const char* sceneClassText(SceneClass scene) {
 
 /// How a technique fares in one kind of scene, at medium quality and in a single frame, as measured. Plain data, crosses the plugin boundary.
 struct Expectation {
-    float cost;            // time of a frame over that of one with direct light alone
-    float errorOnSurfaces; // relmse of its terms on surfaces; 1: it has no light for them
-    float errorInMedia;    // of those in media
+    float cost = 1;            // time of a frame over that of one with direct light alone
+    float errorOnSurfaces = 1; // relmse of its terms on surfaces; 1: it has no light for them, or was not measured
+    float errorInMedia = 1;    // of those in media
 };
 
 } // namespace tyndall

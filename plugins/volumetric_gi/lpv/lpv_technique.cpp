@@ -8,6 +8,7 @@
 #include "volumetric_gi/lpv/lpv_injection.h"
 #include "volumetric_gi/lpv/lpv_printed.h"
 #include "volumetric_gi/lpv/lpv_show.h"
+#include "volumetric_gi/shared/scene_bounds.h"
 
 namespace tyndall::volumetric_gi {
 namespace {
@@ -31,23 +32,14 @@ constexpr TermSet kSets[] = {kIndirectOnSurfaces | kIndirectInMedia,
 
 constexpr double kLeastPower = 1e-25; // watts of all lights; units for less would overflow
 
-Bounds makeBounds(const float minimum[4], const float maximum[4]) {
-    Bounds bounds;
-    for (int axis = 0; axis < 3; ++axis) {
-        bounds.minimum[axis] = double(minimum[axis]);
-        bounds.maximum[axis] = double(maximum[axis]);
-    }
-    return bounds;
-}
-
 Bounds intersection(const Bounds& a, const Bounds& b) {
     return {glm::max(a.minimum, b.minimum), glm::min(a.maximum, b.maximum)};
 }
 
 PlacementRequest placementOf(const plugin::FrameInputs& inputs, const LpvSettings& settings) {
     PlacementRequest request;
-    request.bounds = makeBounds(inputs.scene.boundsMinimum, inputs.scene.boundsMaximum);
-    request.content = makeBounds(inputs.scene.contentMinimum, inputs.scene.contentMaximum);
+    request.bounds = boundsOf(inputs.scene.boundsMinimum, inputs.scene.boundsMaximum);
+    request.content = boundsOf(inputs.scene.contentMinimum, inputs.scene.contentMaximum);
     request.eye = dvec3(vec3(inputs.view.data.cameraPosition));
     request.forward = dvec3(vec3(inputs.view.data.cameraForward));
     request.resolution = settings.resolution;
@@ -76,7 +68,7 @@ uint64_t LpvTechnique::sourceKey(const plugin::FrameInputs& inputs, uint64_t pla
 void LpvTechnique::addSources(fg::FrameGraph& graph, const plugin::FrameInputs& inputs,
                               std::vector<Lattice>& lattices,
                               const LpvSettings& settings) {
-    const Bounds bounds = makeBounds(inputs.scene.boundsMinimum, inputs.scene.boundsMaximum);
+    const Bounds bounds = boundsOf(inputs.scene.boundsMinimum, inputs.scene.boundsMaximum);
     std::vector<Bounds> boxes;
     for (const Lattice& lattice : lattices)
         boxes.push_back(intersection(lattice.level.box(), bounds));

@@ -7,6 +7,7 @@
 #include "plugin/cache_key.h"
 #include "plugin/cached_upload.h"
 #include "tracing/proxy_media.h"
+#include "volumetric_gi/shared/scene_bounds.h"
 
 namespace tyndall::volumetric_gi {
 namespace {
@@ -40,15 +41,6 @@ Keys keysOf(const Scene& scene, const dvec3& origin) {
         if (node.light != kNone) keys.lights = cacheKey(keys.lights, world[i], visible[i]);
     }
     return keys;
-}
-
-Bounds boundsOf(const float (&minimum)[4], const float (&maximum)[4]) {
-    Bounds bounds;
-    for (int axis = 0; axis < 3; ++axis) {
-        bounds.minimum[axis] = double(minimum[axis]);
-        bounds.maximum[axis] = double(maximum[axis]);
-    }
-    return bounds;
 }
 
 /// Rounded outwards to eighths of a power of two, so that small movements do not change it.
