@@ -1,5 +1,6 @@
 // LVVE from LVE: what a segment scatters once, times the part that the media around it scatter back into it and on to the eye.
 #define MARCH_PHASE_GROUPS PHASE_GROUPS
+#define MARCH_TURNS
 #include "gi/shared/march.glsl"
 #include "media/march.glsl"
 #include "shared/@name@.h"
@@ -23,15 +24,16 @@ vec3 albedoOf(Segment s) {
 }
 
 vec3 mediaLight(Ray ray, float distance, ivec2 pixel, uvec2 number) {
-    vec3 sum = vec3(0.0);
+    // Where there is much to do it is done in turns, some of the ray's segments in each: what earlier turns found is in the picture.
+    vec3 sum = params.firstSegment > 0u ? imageLoad(inScatter, ivec2(number)).rgb : vec3(0.0);
     March march;
     if (!beginMarch(ray, distance, march)) return sum;
     vec3 noise = vec3(pixelNoise(number, 0u), pixelNoise2(number, 1u));
     vec2 turn = pixelNoise2(number, 2u);
     uint environment = uint(pixelNoise(number, 3u) * float(mediaHeader.environmentStride));
     Segment s;
-    while (nextSegment(ray, march, s)) {
-        if (s.scatters) {
+    for (uint i = 0u; i < params.endSegment && nextSegment(ray, march, s); ++i) {
+        if (i >= params.firstSegment && s.scatters) {
             vec3 once = segmentInScatter(ray, s, params.lightCount, noise, environment);
             vec3 around = albedoOf(s) * opacityAround(ray.origin + ray.direction * (s.start + 0.5 * s.size), turn);
             sum += exp(-march.before) * once * around;

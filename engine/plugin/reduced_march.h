@@ -3,6 +3,7 @@
 // are marched on their own. The shaders' side: shaders/media/nearest_rays.glsl, spread_rays.glsl and, for techniques, shaders/gi/shared.
 
 #include "plugin/frame_resources.h"
+#include "plugin/shader_rounds.h"
 #include "shared/march.h"
 
 namespace tyndall {
@@ -32,6 +33,21 @@ inline MarchPass readMarch(fg::Builder& builder, MarchStage stage, const ViewRes
     return pass;
 }
 
+/// Calls `dispatch` with the parameters of each turn of a march that gathers the scene's lights: usually one.
+template <typename Dispatch>
+void marchInTurns(const MarchPass& pass, fg::PassContext& context, const Dispatch& dispatch) {
+    const double segments = segmentsOnRay(pass.media, gridWay(pass.media));
+    const double aTurn = segmentsATurn(pass.media);
+    gpu::MarchParams params = pass.params;
+    for (double first = 0; first == 0 || first < segments; first += aTurn) {
+        if (first > 0) context.barrier(fg::Access::StorageWrite);
+        params.firstSegment = uint32_t(first);
+        params.endSegment =
+            first + aTurn < segments ? uint32_t(first + aTurn) : gpu::kMarchAllSegments;
+        dispatch(params);
+    }
+}
+
 /// Of what the stage writes: RGBA32F, a texel a ray or a pixel.
 inline fg::TextureDesc marchPicture(const MarchPass& pass) {
     const int factor = pass.stage == MarchStage::Squares ? int(pass.params.factor) : 1;
@@ -40,8 +56,12 @@ inline fg::TextureDesc marchPicture(const MarchPass& pass) {
 }
 
 /// Binds what every stage's shader uses; passes that march also bind the media.
+template <typename Command>
+Command& bindMarch(Command& command, const MarchPass& pass, const gpu::MarchParams& params) {
+    return bindView(command, pass.view).params(params).bind("depth", pass.depth);
+}
 template <typename Command> Command& bindMarch(Command& command, const MarchPass& pass) {
-    return bindView(command, pass.view).params(pass.params).bind("depth", pass.depth);
+    return bindMarch(command, pass, pass.params);
 }
 
 /// Adds the stages one after the other. `add(stage, before)` adds one and returns what it writes, of which `before` is the last stage's; nothing (false) if
@@ -85,11 +105,15 @@ inline LightMarch declareLightMarch(fg::Builder& builder, const MarchPass& pass,
     return march;
 }
 
-template <typename Command> Command& bindLightMarch(Command& command, const LightMarch& march) {
-    bindMarch(command, march.pass).bind("inScatter", march.light);
+template <typename Command>
+Command& bindLightMarch(Command& command, const LightMarch& march, const gpu::MarchParams& params) {
+    bindMarch(command, march.pass, params).bind("inScatter", march.light);
     if (march.transmittance) command.bind("transmittance", march.transmittance);
     // In the first stage the shader does not read it, but the binding must be valid.
     return command.bind("before", march.before ? march.before : march.pass.depth);
+}
+template <typename Command> Command& bindLightMarch(Command& command, const LightMarch& march) {
+    return bindLightMarch(command, march, march.pass.params);
 }
 
 } // namespace tyndall

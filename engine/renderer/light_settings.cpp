@@ -14,7 +14,7 @@ const SettingDesc kLights[] = {
     TYNDALL_INT(LightSettings, clusterSlices, "lights.clusterSlices", "Cluster slices", "", 1, 64, 24, "Clusters along the distance from the camera. More give shorter light lists and take more time and memory to build."),
     TYNDALL_INT(LightSettings, clusterCapacity, "lights.clusterCapacity", "Lights per cluster", "lights", 1, 1024, 128,
                 "Length of a cluster's light list; a cluster with more lights evaluates every light. Raise it for dense groups of lights; costs memory."),
-    TYNDALL_INT(LightSettings, environmentLights, "environment.lights", "Environment lights", "lights", 0, 256, 8,
+    TYNDALL_INT(LightSettings, environmentLights, "environment.lights", "Environment lights", "lights", 0, 256, 24,
                 "Directional lights with shadows that represent the environment. More are smoother and cost a shadow map each; 0 leaves surfaces and media unlit by it."),
     TYNDALL_INT(LightSettings, mediumLights, "lights.media", "Lights per emissive medium", "lights", 0, 64, 2,
                 "Lights with shadows that represent the emission of each medium, such as a fire. More are smoother and cost shadow maps; 0: the medium is visible but lights nothing."),
@@ -38,7 +38,7 @@ const SettingDesc kShadows[] = {
                 "Side of a layer of the shadow atlas, rounded down to a power of two. A larger atlas holds more and larger maps and costs memory."),
     TYNDALL_INT(ShadowSettings, atlasLayers, "shadows.atlasLayers", "Atlas layers", "", 1, 64, 4,
                 "Layers of the shadow atlas, each 64 MiB at 4096 px. With too few, shadow maps become smaller."),
-    TYNDALL_INT(ShadowSettings, taps, "shadows.taps", "Filter taps", "", 1, 64, 4, "Shadow-map samples that filter the edge of a shadow. More are smoother and cost time for every light and pixel."),
+    TYNDALL_INT(ShadowSettings, taps, "shadows.taps", "Filter taps", "", 1, 64, 4, "Shadow-map samples that filter the edge of a shadow; a quarter of them for each environment light. More are smoother and cost time for every light and pixel."),
     TYNDALL_INT(ShadowSettings, searchTaps, "shadows.searchTaps", "Search taps", "", 0, 64, 12,
                 "Shadow-map samples that estimate the distance of the caster of a soft shadow. More are steadier and slower; 0 makes all shadows hard."),
 };
@@ -46,8 +46,8 @@ const SettingDesc kShadows[] = {
 const PresetEntry kPresets[] = {
     {Quality::Low, "lights.cutoff", "0.01"},            {Quality::Medium, "lights.cutoff", "0.003"},
     {Quality::High, "lights.cutoff", "0.001"},          {Quality::Ultra, "lights.cutoff", "0"},
-    {Quality::Low, "environment.lights", "4"},          {Quality::Medium, "environment.lights", "8"},
-    {Quality::High, "environment.lights", "16"},        {Quality::Ultra, "environment.lights", "64"},
+    {Quality::Low, "environment.lights", "4"},          {Quality::Medium, "environment.lights", "24"},
+    {Quality::High, "environment.lights", "32"},        {Quality::Ultra, "environment.lights", "64"},
     {Quality::Low, "lights.media", "1"},                {Quality::Medium, "lights.media", "2"},
     {Quality::High, "lights.media", "4"},               {Quality::Ultra, "lights.media", "8"},
     {Quality::Low, "shadows.maxLights", "4"},           {Quality::Medium, "shadows.maxLights", "8"},

@@ -21,6 +21,8 @@ const SettingDesc kMedia[] = {
                 "Environment lights gathered at each step of a ray; the next step gathers others. More are less noisy and cost time."),
     TYNDALL_ENUM(MediaSettings, resolution, "media.march.resolution", "March resolution", kResolutionNames, MarchResolution::Half,
                  "One ray for each pixel, each 2x2 or each 4x4 pixels. Fewer are faster and blur the outlines of light in media; transmittance is computed for every pixel."),
+    TYNDALL_BOOL(MediaSettings, smooth, "media.march.smooth", "Smooth", true,
+                 "In a single frame, averages the light of each ray with that of the rays around it. Off is sharper and shows where along its ray each gathers light, as a pattern of dots."),
     TYNDALL_BOOL(MediaSettings, refine, "media.march.refine", "Refine misfits", true,
                  "At a reduced resolution, marches pixels on their own where no neighbouring ray fits. Sharper outlines for some more rays."),
     TYNDALL_FLOAT(MediaSettings, depthTolerance, "media.march.depthTolerance", "Depth tolerance", "", 0.0001, 10, 0.05,

@@ -21,6 +21,7 @@ struct MediaSettings {
     int32_t steps;
     int32_t environmentLights;
     MarchResolution resolution;
+    bool smooth;
     bool refine;
     float depthTolerance, transmittanceTolerance, refineWeight;
     float minTransmittance;

@@ -1,6 +1,7 @@
 #include "renderer/medium_march_pass.h"
 
 #include "plugin/reduced_march.h"
+#include "plugin/smooth_march.h"
 
 namespace tyndall {
 namespace {
@@ -49,23 +50,25 @@ void record(const MarchData& data, fg::PassContext& context) {
     const bool lists = inScatter && !upsample && data.lights.sceneLightCount > kFewLights;
     // Upsampling marches few pixels: it is not specialised on shadows.
     const bool soft = inScatter && (data.lights.softShadows || lists || upsample);
-    auto command = context.compute(upsample ? "media/upsample.comp" : "media/march.comp",
-                                   {{"PHASE_GROUPS", int32_t(media.phaseGroups)},
-                                    {"IN_SCATTER", lists ? 2 : int32_t(inScatter)},
-                                    {"EMISSION", emission},
-                                    {"MEDIA_KINDS", mediaKinds(media, inScatter)},
-                                    {"SOFT_SHADOWS", soft}});
-    if (inScatter) bindLights(command, data.lights);
-    bindMedia(command, media);
-    bindMarch(command, data.march).bind("transmittance", data.result.transmittance);
-    if (inScatter) command.bind("inScatter", data.result.inScatter);
-    if (emission) command.bind("emission", data.result.emission);
-    if (data.before) {
-        command.bind("coarseTransmittance", data.before.transmittance);
-        if (inScatter) command.bind("coarseInScatter", data.before.inScatter);
-        if (emission) command.bind("coarseEmission", data.before.emission);
-    }
-    command.dispatchOver(data.result.transmittance);
+    marchInTurns(data.march, context, [&](const gpu::MarchParams& params) {
+        auto command = context.compute(upsample ? "media/upsample.comp" : "media/march.comp",
+                                       {{"PHASE_GROUPS", int32_t(media.phaseGroups)},
+                                        {"IN_SCATTER", lists ? 2 : int32_t(inScatter)},
+                                        {"EMISSION", emission},
+                                        {"MEDIA_KINDS", mediaKinds(media, inScatter)},
+                                        {"SOFT_SHADOWS", soft}});
+        if (inScatter) bindLights(command, data.lights);
+        bindMedia(command, media);
+        bindMarch(command, data.march, params).bind("transmittance", data.result.transmittance);
+        if (inScatter) command.bind("inScatter", data.result.inScatter);
+        if (emission) command.bind("emission", data.result.emission);
+        if (data.before) {
+            command.bind("coarseTransmittance", data.before.transmittance);
+            if (inScatter) command.bind("coarseInScatter", data.before.inScatter);
+            if (emission) command.bind("coarseEmission", data.before.emission);
+        }
+        command.dispatchOver(data.result.transmittance);
+    });
 }
 
 /// `skip`: why there is nothing to march; null: there is.
@@ -120,7 +123,9 @@ MediumMarch addTransmittancePass(fg::FrameGraph& graph, const MediaFrame& frame,
 
 gpu::MarchParams marchParams(const MediaSettings& settings) {
     gpu::MarchParams params{};
-    params.flags = settings.refine ? gpu::kMarchRefine : 0u;
+    params.endSegment = gpu::kMarchAllSegments;
+    params.flags = (settings.refine ? gpu::kMarchRefine : 0u) |
+                   (settings.smooth ? gpu::kMarchSmooth : 0u);
     params.factor = 1u << uint32_t(settings.resolution);
     params.depthTolerance = settings.depthTolerance;
     params.transmittanceTolerance = settings.transmittanceTolerance;
@@ -142,7 +147,11 @@ MediumMarch addMediumMarchPass(fg::FrameGraph& graph, const MediaFrame& frame,
     const gpu::MarchParams params = makeParams(inputs, *frame.settings, inScatter, emission);
     const MediumMarch march = addMarchStages<MediumMarch>(
         int(params.factor), false, [&](MarchStage stage, const MediumMarch& before) {
-            return addStage(graph, frame, inputs, params, skip, stage, before);
+            MediumMarch images = addStage(graph, frame, inputs, params, skip, stage, before);
+            if (!skip && inScatter && stage == MarchStage::Squares)
+                images.inScatter = addMarchSmoothing(graph, "media.smooth", inputs.view, inputs.depth,
+                                                     params, images.transmittance, images.inScatter);
+            return images;
         });
     if (!skip) return march;
     return frame.marchSkipReason ? MediumMarch{} : addTransmittancePass(graph, frame, inputs);

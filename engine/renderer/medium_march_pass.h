@@ -14,7 +14,7 @@ struct MediumMarchInputs {
     bool emission = true;  // the media's part of LE is wanted
 };
 
-/// How rays are marched and, where they are fewer than pixels, upsampled: media.march.*. The flags hold no more than kMarchRefine.
+/// How rays are marched and, where they are fewer than pixels, upsampled: media.march.*. The flags hold no more than kMarchRefine and kMarchSmooth.
 [[nodiscard]] gpu::MarchParams marchParams(const MediaSettings& settings);
 
 /// View-sized RGBA32F. Null: not computed, because there is none (reason in the report) or it is not wanted.

@@ -419,6 +419,9 @@ ShadowPlan planShadows(std::span<gpu::LightData> lights, std::span<const uint32_
         const vec4 ball = ballAround(light);
         for (const Frustum& frustum : frusta) {
             gpu::ShadowView entry = describe(frustum, int(frusta.size()), soft, settings);
+            // Many of them overlap: that blurs their edges more than a filter does.
+            if ((light.flags & gpu::kLightFromEnvironment) != 0)
+                entry.taps = (settings.taps + 3) / 4;
             atlas.place(entry, p.side);
             uint64_t key = hashView(frustum, entry, converge ? 1 : 0);
             for (int i = 0; i < 4; ++i) key = fg::mixHash(key, std::bit_cast<uint32_t>(ball[i]));

@@ -48,4 +48,21 @@ float rectIrradiance(vec3 centre, vec3 halfX, vec3 halfY, vec3 facing, vec3 norm
     return 0.5 * abs(sum);
 }
 
+/// Solid angle of the same rectangle, sr: 0 behind it, up to 2π right in front. As two triangles (Van Oosterom and Strackee 1983, "The Solid Angle of a Plane
+/// Triangle"); their triple product is the rectangle's area times the height above it, so that nothing cancels far away.
+float rectSolidAngle(vec3 centre, vec3 halfX, vec3 halfY, vec3 facing) {
+    float height = -dot(centre, facing);
+    if (!(height > 0.0)) return 0.0;
+    vec3 a = centre - halfX - halfY;
+    vec3 b = centre + halfX - halfY;
+    vec3 c = centre + halfX + halfY;
+    vec3 d = centre - halfX + halfY;
+    vec4 lengths = vec4(length(a), length(b), length(c), length(d));
+    float product = 4.0 * length(cross(halfX, halfY)) * height;
+    float ac = dot(a, c);
+    float first = lengths.x * lengths.y * lengths.z + dot(a, b) * lengths.z + ac * lengths.y + dot(b, c) * lengths.x;
+    float second = lengths.x * lengths.z * lengths.w + ac * lengths.w + dot(a, d) * lengths.z + dot(c, d) * lengths.x;
+    return 2.0 * (atan(product, first) + atan(product, second));
+}
+
 #endif

@@ -31,6 +31,7 @@ const float kSurfaceBiasOfSlope = 0.1;  // of the depth that the plane spans wit
 const float kSteepestSlope = 24.0;      // depth over width; beyond it hardly any light arrives, and planes seen edge-on explode
 const float kMediumBiasTexels = 1.5;
 const float kSmallKernelTexels = 1.25;  // radius of the kernel for lights without size
+const int kPenumbraTaps = 4;            // times as many lookups where some of the light may be seen and some not
 const float kNearestBlocker = 0.25;     // casters are looked for beyond this part of the way from the light to the point
 
 /// A point as one view of the atlas sees it.
@@ -168,13 +169,14 @@ vec3 shadowOnWay(uint light, vec3 position, vec3 onLight, float part, float reac
     return mix(lights[light].position.xyz + onLight, position, part);
 }
 
-/// `at` moved along its ray from the light onto the plane through `position`; without a plane, to the same distance.
+/// `at` moved along its ray from the light onto the plane through `position`; without a plane, to the same distance from the light: a plane that no surface
+/// has would go on through walls, right beside a lamp that is larger than its distance.
 vec3 shadowOntoPlane(uint light, vec3 at, vec3 position, vec3 normal, bool hasPlane) {
     bool parallel = lights[light].type == kLightDirectional;
     vec3 ray = parallel ? lights[light].direction.xyz : at - lights[light].position.xyz;
-    vec3 plane = hasPlane ? normal : (parallel ? lights[light].direction.xyz : normalize(position - lights[light].position.xyz));
+    vec3 plane = hasPlane ? normal : lights[light].direction.xyz;
     float along = dot(ray, plane);
-    if (abs(along) <= length(ray) / kSteepestSlope) return parallel ? at : lights[light].position.xyz + normalize(ray) * distance(position, lights[light].position.xyz);
+    if ((!hasPlane && !parallel) || abs(along) <= length(ray) / kSteepestSlope) return parallel ? at : lights[light].position.xyz + normalize(ray) * distance(position, lights[light].position.xyz);
     return at + ray * (dot(position - at, plane) / along);
 }
 
@@ -204,6 +206,8 @@ float shadowSoft(uint light, ShadowPoint centre, vec3 position, vec3 normal, boo
     for (int i = 0; i < searchTaps + taps; ++i) {
         if (i == searchTaps) {
             if (found == 0.0) return 1.0;
+            // Some ways are free and some are not: a penumbra, where few lookups show as dots.
+            if (hasPlane && found < float(searchTaps)) taps *= kPenumbraTaps;
             part = clamp(sum / found, 0.05, 1.0);
             spiral = shadowSpiralStart(u.y);
         }

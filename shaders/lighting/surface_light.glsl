@@ -58,13 +58,12 @@ vec3 transmittanceToLight(uint light, vec3 position, LightSample incoming) {
 // irradiance in closed form, and samples for the lobe and for how Fresnel and media weigh its parts. One loop serves all kinds,
 // because every call of a shadow or a medium is compiled where it stands.
 vec3 lightOf(uint light, LitPoint point, vec2 u, float lightsShare, inout EnvironmentVisibility seen) {
-    LightData data = lights[light];
-    bool fromEnvironment = (data.flags & kLightFromEnvironment) != 0u;
-    bool area = data.type == kLightRect && !viewConverges();
+    bool fromEnvironment = (lights[light].flags & kLightFromEnvironment) != 0u;
+    bool area = lights[light].type == kLightRect && !viewConverges();
     float irradiance = 0.0;
     uint count = 1u;
     if (area) {
-        irradiance = rectIrradiance(data.position.xyz - point.position, data.axisX.xyz, data.axisY.xyz, data.direction.xyz, point.normal);
+        irradiance = rectIrradiance(lights[light].position.xyz - point.position, lights[light].axisX.xyz, lights[light].axisY.xyz, lights[light].direction.xyz, point.normal);
         if (!(irradiance > 0.0)) return vec3(0.0);
         count = max(surfaceLight.rectSamples, 1u);
     }
@@ -81,13 +80,15 @@ vec3 lightOf(uint light, LitPoint point, vec2 u, float lightsShare, inout Enviro
         if (!(cosine > 0.0) || !(dot(point.geometricNormal, incoming.direction) > 0.0) || !(power > 0.0)) continue;
         if (visibility < 0.0) visibility = shadowVisibility(light, point.position, point.geometricNormal, u);
         vec3 transmittance = vec3(0.0);
-        if (visibility > 0.0) transmittance = transmittanceToLight(light, point.position, incoming);
-        BrdfValue value = evaluateBrdf(point.brdf, point.normal, point.toEye, incoming.direction);
-        vec3 arriving = transmittance * incoming.illuminance * cosine;
-        specular += arriving * value.specular;
-        diffuse += (area ? transmittance * (cosine * power) : arriving) * value.diffuse;
-        weights += cosine * power;
-        if (fromEnvironment) {
+        if (visibility > 0.0) {
+            transmittance = transmittanceToLight(light, point.position, incoming);
+            BrdfValue value = evaluateBrdf(point.brdf, point.normal, point.toEye, incoming.direction);
+            vec3 arriving = transmittance * incoming.illuminance * cosine;
+            specular += arriving * value.specular;
+            diffuse += (area ? transmittance * (cosine * power) : arriving) * value.diffuse;
+            weights += cosine * power;
+        }
+        if (ENVIRONMENT == 1 && fromEnvironment) {
             vec3 halfway = normalize(point.toEye + incoming.direction + 1e-4 * point.normal);
             float vote = power * cosine * ggxDistribution(max(point.brdf.alpha, kBlurAlpha), point.normal, halfway);
             seen.seen += vote * visibility * transmittance;
@@ -95,7 +96,7 @@ vec3 lightOf(uint light, LitPoint point, vec2 u, float lightsShare, inout Enviro
         }
     }
     if (!(visibility > 0.0)) return vec3(0.0);
-    if (area) diffuse *= data.intensity.rgb * (irradiance / weights);
+    if (area) diffuse *= lights[light].intensity.rgb * (irradiance / weights);
     return visibility * (diffuse + (fromEnvironment ? lightsShare : 1.0) / float(count) * specular);
 }
 

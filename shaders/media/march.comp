@@ -19,10 +19,10 @@ layout(std140) uniform Params { MarchParams params; };
 uniform sampler2D depth;
 layout(rgba32f) uniform writeonly image2D transmittance;
 #if IN_SCATTER
-layout(rgba32f) uniform writeonly image2D inScatter;
+layout(rgba32f) uniform image2D inScatter; // from turn to turn light comes to it
 #endif
 #if EMISSION
-layout(rgba32f) uniform writeonly image2D emission;
+layout(rgba32f) uniform image2D emission;
 #endif
 
 // Known when compiling: what is not wanted costs nothing.
@@ -91,12 +91,19 @@ void main() {
     makeTileList(distance);
 #endif
     if (any(greaterThanEqual(pixel, imageSize(transmittance)))) return;
-    MarchResult march = marchMedia(cameraRay(centre), distance, kWanted, params.lightCount, uvec2(full));
+    marchFirstSegment = params.firstSegment;
+    marchEndSegment = params.endSegment;
+    bool begun = params.firstSegment > 0u;
+    MarchResult march = marchMedia(cameraRay(centre), distance, kWanted, params.lightCount, uvec2(pixel));
     imageStore(transmittance, pixel, vec4(exp(-march.opticalDepth), 1.0));
 #if IN_SCATTER
-    imageStore(inScatter, pixel, vec4(march.inScatter, 1.0));
+    vec4 before = begun ? imageLoad(inScatter, pixel) : vec4(0.0);
+    vec3 light = before.rgb + march.inScatter;
+    // smooth.comp leaves light from grids alone: their share of it.
+    float fromGrids = before.w * meanOf(before.rgb) + meanOf(march.fromGrids);
+    imageStore(inScatter, pixel, vec4(light, fromGrids / max(meanOf(light), 1e-30)));
 #endif
 #if EMISSION
-    imageStore(emission, pixel, vec4(march.emission, 1.0));
+    imageStore(emission, pixel, vec4(march.emission + (begun ? imageLoad(emission, pixel).rgb : vec3(0.0)), 1.0));
 #endif
 }

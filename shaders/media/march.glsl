@@ -20,6 +20,7 @@
 #include "common/view.glsl"
 #if MARCH_GATHERS
 #include "lighting/light.glsl"
+#include "lighting/rect_irradiance.glsl"
 #include "lighting/shadow.glsl"
 #include "media/near_glow.glsl"
 #endif
@@ -42,6 +43,7 @@ MarchOctaves marchOctaves;
 struct MarchResult {
     vec3 opticalDepth; // of the whole way
     vec3 inScatter;    // nits that single scattering (or the octaves) sends back along the ray
+    vec3 fromGrids;    // the part of that from segments that hold a grid
     vec3 emission;     // nits that the media's own emission sends back along the ray
 };
 
@@ -161,6 +163,18 @@ int chooseGather(uint light, Ray ray, Segment s, out Sight sight) {
     return -int(ceil(clamp(sight.angle * kPointsPerRadian, 1.0, 8.0)));
 }
 
+// ---- rectangles in single frames ---------------------------------------------------------------------------------
+
+/// Does the light's area count in this frame, not one point that was chosen on it?
+bool isWholeRect(uint light) { return lights[light].type == kLightRect && lights[light].samplePoint.w <= 0.0; }
+
+/// What a rectangle sends through a point from all its area, lux. A single point's inverse square has no bound right beside the rectangle, and shows as
+/// specks; the point still tells the direction and what is in the way.
+vec3 rectFluence(uint light, vec3 position) {
+    return lights[light].intensity.rgb *
+           rectSolidAngle(lights[light].position.xyz - position, lights[light].axisX.xyz, lights[light].axisY.xyz, lights[light].direction.xyz);
+}
+
 // ---- light scattered in a segment -------------------------------------------------------------------------------
 
 vec3 scatteredLight(Segment s, float cosTheta, vec3 depthToLight) {
@@ -192,6 +206,7 @@ vec3 segmentLight(uint light, Ray ray, Segment s, vec3 noise) {
         GatherPoint point = points > 0 ? gatherBySegment(s, noise.x) : gatherByAngle(s, sight, (float(i) + noise.x) / float(-points));
         vec3 position = ray.origin + ray.direction * (s.start + s.size * point.fraction);
         LightSample arriving = sampleLight(light, position, noise.yz);
+        if (isWholeRect(light)) arriving.illuminance = rectFluence(light, position);
         if (!(maximumOf(arriving.illuminance) > 0.0)) continue;
         float visible = shadowVisibility(light, position, vec3(0.0), noise.yz);
         if (visible <= 0.0) continue;
@@ -244,9 +259,13 @@ vec3 segmentInScatter(Ray ray, Segment s, uint lightCount, vec3 noise, uint turn
 #endif
 // ---- the march --------------------------------------------------------------------------------------------------
 
+// Of a ray's segments those that add light in this turn (MarchParams.firstSegment, endSegment). A turn that is not the last ends behind its own.
+uint marchFirstSegment = 0u;
+uint marchEndSegment = kMarchAllSegments;
+
 /// From ray.origin over `distance` metres (1e30: endless). `flags`: kMarchInScatter, kMarchEmission. `pixel` seeds the noise.
 MarchResult marchMedia(Ray ray, float distance, uint flags, uint lightCount, uvec2 pixel) {
-    MarchResult result = MarchResult(vec3(0.0), vec3(0.0), vec3(0.0));
+    MarchResult result = MarchResult(vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0));
     March march;
     if (!beginMarch(ray, distance, march)) {
         // Nothing to gather light from; what is out there may still absorb.
@@ -256,20 +275,24 @@ MarchResult marchMedia(Ray ray, float distance, uint flags, uint lightCount, uve
     vec3 noise = vec3(pixelNoise(pixel, 0u), pixelNoise2(pixel, 1u));
     uint turn = uint(pixelNoise(pixel, 3u) * float(mediaHeader.environmentStride));
     Segment s;
-    while (nextSegment(ray, march, s)) {
+    for (uint number = 0u; number < marchEndSegment && nextSegment(ray, march, s); ++number) {
         vec3 transmittance = exp(-march.before);
+        bool ours = number >= marchFirstSegment;
 #if MARCH_GATHERS
-        if ((flags & kMarchInScatter) != 0u && s.scatters)
-            result.inScatter += transmittance * segmentInScatter(ray, s, lightCount, noise, turn);
+        if (ours && (flags & kMarchInScatter) != 0u && s.scatters) {
+            vec3 light = transmittance * segmentInScatter(ray, s, lightCount, noise, turn);
+            result.inScatter += light;
+            if (s.inGrid) result.fromGrids += light;
+        }
 #endif
-        if ((flags & kMarchEmission) != 0u)
+        if (ours && (flags & kMarchEmission) != 0u)
             result.emission += transmittance * (s.emission * oneMinusExpOverX(s.depth) + (s.glows ? blackbodyLight(ray, s, noise.x) : vec3(0.0)));
         // Golden ratio and its generalisation to two dimensions: neighbouring segments differ as much as they can.
         noise = fract(noise + vec3(0.61803399, 0.75487767, 0.56984029));
         ++turn;
     }
     result.opticalDepth = march.before;
-    if (march.next < distance)
+    if (marchEndSegment == kMarchAllSegments && march.next < distance)
         result.opticalDepth = min(result.opticalDepth + opticalDepthBetween(ray.origin, ray.direction, march.next, distance), vec3(kOpaque));
     return result;
 }

@@ -24,6 +24,7 @@ struct Segment {
     float extinctionStart; // mean over the channels, at the ends
     float extinctionEnd;
     bool scatters;
+    bool inGrid;           // a grid has part of it
     bool glows;            // a blackbody has part of it
 };
 
@@ -207,6 +208,7 @@ void addMedium(uint m, Ray ray, inout Segment s) {
     vec2 ends = vec2(1.0);
     if (isGrid(m)) {
         integral = gridSegment(m, local, s.start, end, ends);
+        s.inGrid = s.inGrid || integral > 0.0;
     } else if (media[m].kind == kMediumHeight) {
         float scaleHeight = media[m].extinction.w;
         integral = heightIntegral(local, scaleHeight, s.start, end);
@@ -242,6 +244,7 @@ Segment marchSegment(Ray ray, float t, float end) {
     s.extinctionStart = 0.0;
     s.extinctionEnd = 0.0;
     s.scatters = false;
+    s.inGrid = false;
     s.glows = false;
     for (uint m = 0u; m < mediumCount(); ++m) addMedium(m, ray, s);
     s.depth = min(s.depth, vec3(kOpaque));

@@ -10,11 +10,11 @@ uniform sampler2D coarseTransmittance;
 layout(rgba32f) uniform writeonly image2D transmittance;
 #if IN_SCATTER
 uniform sampler2D coarseInScatter;
-layout(rgba32f) uniform writeonly image2D inScatter;
+layout(rgba32f) uniform image2D inScatter; // from turn to turn light comes to pixels that are marched again
 #endif
 #if EMISSION
 uniform sampler2D coarseEmission;
-layout(rgba32f) uniform writeonly image2D emission;
+layout(rgba32f) uniform image2D emission;
 #endif
 
 // Known when compiling: what is not wanted costs nothing.
@@ -29,22 +29,27 @@ void main() {
     float distance = distanceAt(pixel);
     vec3 through = exp(-opticalDepthAlong(ray.origin, ray.direction, distance));
     RaysAround rays = raysAround(pixel, distance, through, textureSize(coarseTransmittance, 0));
-    MarchResult march = MarchResult(vec3(0.0), vec3(0.0), vec3(0.0));
+    bool begun = params.firstSegment > 0u;
+    bool alone = isAlone(rays);
+    if (begun && !alone) return;
+    MarchResult march = MarchResult(vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0));
 #if IN_SCATTER
     march.inScatter = spreadScattered(rays, coarseInScatter);
 #endif
 #if EMISSION
     march.emission = spread(rays, coarseEmission);
 #endif
-    if (isAlone(rays)) {
+    if (alone) {
+        marchFirstSegment = params.firstSegment;
+        marchEndSegment = params.endSegment;
         march = marchMedia(ray, distance, kWanted, params.lightCount, uvec2(pixel));
         through = exp(-march.opticalDepth);
     }
     imageStore(transmittance, pixel, vec4(through, 1.0));
 #if IN_SCATTER
-    imageStore(inScatter, pixel, vec4(march.inScatter, 1.0));
+    imageStore(inScatter, pixel, vec4(march.inScatter + (begun ? imageLoad(inScatter, pixel).rgb : vec3(0.0)), 1.0));
 #endif
 #if EMISSION
-    imageStore(emission, pixel, vec4(march.emission, 1.0));
+    imageStore(emission, pixel, vec4(march.emission + (begun ? imageLoad(emission, pixel).rgb : vec3(0.0)), 1.0));
 #endif
 }

@@ -238,6 +238,41 @@ TEST_P(GeometryShader, RectIsDarkBehindAndBelow) {
     EXPECT_EQ(values[1], 0.0f);
 }
 
+/// Solid angle of the rectangle [x0, x1]×[y0, y1] at height h above the point: four right-angled corners, each a quarter of a pyramid's.
+double solidAngleAbove(double x0, double x1, double y0, double y1, double h) {
+    const auto corner = [&](double x, double y) {
+        return std::atan(x * y / (h * std::sqrt(h * h + x * x + y * y)));
+    };
+    return corner(x1, y1) - corner(x0, y1) - corner(x1, y0) + corner(x0, y0);
+}
+
+TEST_P(GeometryShader, RectsHaveTheSolidAngleOfAPyramid) {
+    std::vector<vec4> inputs;
+    std::vector<double> expected, heights;
+    for (const double scale : {1e-3, 1.0, 1e3})
+        for (const double h : {1e-4, 0.01, 0.3, 1.0, 5.0, 100.0, 3000.0})
+            for (const double aside : {0.0, 0.4, 0.7, 3.0}) {
+                const dvec3 centre(aside, h, -0.5 * aside);
+                for (const dvec3& v :
+                     {centre * scale, dvec3(0.5, 0, 0) * scale, dvec3(0, 0, 1.5) * scale})
+                    inputs.emplace_back(vec3(v), 0);
+                expected.push_back(solidAngleAbove(centre.x - 0.5, centre.x + 0.5, centre.z - 1.5,
+                                                   centre.z + 1.5, h));
+                heights.push_back(h);
+            }
+    const std::vector<vec4> values = runOnGpu({"lighting/rect_irradiance.glsl"}, R"(
+        uint i = 3u * id;
+        outputs[id] = vec4(rectSolidAngle(inputs[i].xyz, inputs[i + 1u].xyz, inputs[i + 2u].xyz, vec3(0, -1, 0)),
+                           rectSolidAngle(inputs[i].xyz, inputs[i + 1u].xyz, inputs[i + 2u].xyz, vec3(0, 1, 0)), 0, 0);)",
+                                              inputs, expected.size(), uint32_t(expected.size()));
+    for (size_t i = 0; i < expected.size(); ++i) {
+        // Near the plane a difference of products of three lengths, each good to a float's 6e-8, is held against the height.
+        EXPECT_NEAR(double(values[i].x), expected[i], 2e-5 * expected[i] + 1e-6 / std::min(heights[i], 1.0))
+            << "rect " << i;
+        EXPECT_EQ(values[i].y, 0.0f) << "seen from behind, rect " << i;
+    }
+}
+
 TEST_P(GeometryShader, EnvironmentDirectionsAreWhereTheInterfacePutsThem) {
     struct Case {
         dvec3 direction;

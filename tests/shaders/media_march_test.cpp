@@ -244,6 +244,44 @@ TEST_P(MediaMarch, GridLitBySunAndLampMatchesQuadrature) {
     expectQuadrature(library, {cloud(seed())}, {world}, ray, pointLamp(dvec3(0.2, 0.4, 0.4)), 3e-3);
 }
 
+TEST_P(MediaMarch, BesideARectangleASingleFrameHasNoSpecks) {
+    // In thin fog a ray under a rectangle gathers σ/4π ∫ Ω ds of its radiance, Ω of four corners as in a pyramid.
+    gl::ShaderLibrary library;
+    const double sigma = 1e-4;
+    for (const double below : {0.02, 0.1, 0.5}) {
+        gpu::LightData light = lamp(gpu::kLightRect);
+        light.position = vec4(0, float(below), 0, 0);
+        light.axisX = vec4(0.5f, 0, 0, 0);
+        light.axisY = vec4(0, 0, 0.5f, 0);
+        light.intensity = vec4(1, 1, 1, 1); // w: area
+        MediaOptions options;
+        options.steps = 24;
+        options.lights.push_back(light);
+        const Medium thin = fog(MediumKind::Everywhere, vec3(float(sigma)), vec3(0));
+        const dmat4 world(1.0);
+        const Scene scene = sceneOf(std::span(&thin, 1), std::span(&world, 1));
+        MediaCompute compute(scene, options);
+        const std::vector<vec4> values = compute.run(
+            library, kIncludes, kInScatter, rayInputs(dvec3(-3, 0, 0.1), dvec3(1, 0, 0), 6, 1), 4096);
+        double exact = 0;
+        constexpr int kPanels = 20000;
+        for (int i = 0; i < kPanels; ++i) {
+            const double x = -3 + 6 * (i + 0.5) / kPanels;
+            const auto corner = [&](double a, double b) {
+                return std::atan(a * b / (below * std::sqrt(below * below + a * a + b * b)));
+            };
+            const double solidAngle = corner(0.5 - x, 0.4) + corner(0.5 + x, 0.4) +
+                                      corner(0.5 - x, 0.6) + corner(0.5 + x, 0.6);
+            exact += solidAngle * 6 / kPanels;
+        }
+        exact *= sigma / (4 * kPi);
+        EXPECT_NEAR(meanOf(values).x / exact, 1, 5e-3) << below << " m below";
+        double largest = 0;
+        for (const vec4& value : values) largest = std::max(largest, double(value.x));
+        EXPECT_LT(largest / exact, 1.3) << below << " m below";
+    }
+}
+
 TEST_P(MediaMarch, OverlappingMediaMatchQuadrature) {
     gl::ShaderLibrary library;
     Medium ball = fog(MediumKind::Sphere, vec3(0.4f, 0.2f, 0.9f), vec3(0.1f));

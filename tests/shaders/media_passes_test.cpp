@@ -308,6 +308,59 @@ TEST_P(MediaPasses, ReducedResolutionsAreCloseAndTransmittanceIsNot) {
     }
 }
 
+/// Mean difference of a pixel from its four neighbours, over the mean: a pattern of dots has much of it.
+double roughness(const Image& image) {
+    double rough = 0, sum = 0;
+    for (int y = 1; y + 1 < image.height; ++y)
+        for (int x = 1; x + 1 < image.width; ++x) {
+            const double around = double(image.at(x - 1, y)[0]) + double(image.at(x + 1, y)[0]) +
+                                  double(image.at(x, y - 1)[0]) + double(image.at(x, y + 1)[0]);
+            rough += std::abs(0.25 * around - double(image.at(x, y)[0]));
+            sum += double(image.at(x, y)[0]);
+        }
+    return rough / sum;
+}
+
+TEST_P(MediaPasses, SingleFramesOfFogHaveNoPattern) {
+    const Scene scene = sceneWith({mediumBox(dvec3(6))}, {dmat4(1.0)});
+    addLamp(vec3(0.5f, 0.5f, 1));
+    MediaSettings& settings = system->settings();
+    settings.steps = 6;
+    for (const MarchResolution resolution : {MarchResolution::Full, MarchResolution::Half}) {
+        settings.resolution = resolution;
+        settings.smooth = false;
+        const Image rough = render(scene, 96, 72).inScatter;
+        settings.smooth = true;
+        const Image smooth = render(scene, 96, 72).inScatter;
+        // Of the pattern a ninth is left, and the light's own shape in so small a picture.
+        EXPECT_LT(roughness(smooth), 0.5 * roughness(rough)) << int(resolution);
+        double sum = 0, expected = 0;
+        for (int y = 0; y < 72; ++y)
+            for (int x = 0; x < 96; ++x)
+                sum += double(smooth.at(x, y)[0]), expected += double(rough.at(x, y)[0]);
+        EXPECT_NEAR(sum / expected, 1, 0.01) << int(resolution);
+    }
+}
+
+TEST_P(MediaPasses, OnlyFogInSingleFramesIsSmoothed) {
+    addLamp(vec3(1.5f, 0.5f, 1));
+    MediaSettings& settings = system->settings();
+    const auto bothWays = [&](const Scene& scene, bool averaged) {
+        converge = averaged;
+        settings.smooth = false;
+        const Image rough = render(scene, 64, 48).inScatter;
+        settings.smooth = true;
+        return std::pair(rough, render(scene, 64, 48).inScatter);
+    };
+    const auto [grid, smoothGrid] = bothWays(sceneWith({puff()}, {dmat4(1.0)}), false);
+    EXPECT_LT(meanDifference(smoothGrid, grid), 1e-6);
+    const auto [fog, smoothFog] = bothWays(sceneWith({mediumBox(dvec3(3))}, {dmat4(1.0)}), true);
+    EXPECT_EQ(meanDifference(smoothFog, fog), 0);
+    const auto [frame, smoothFrame] =
+        bothWays(sceneWith({mediumBox(dvec3(3))}, {dmat4(1.0)}), false);
+    EXPECT_GT(meanDifference(smoothFrame, frame), 1e-3);
+}
+
 TEST_P(MediaPasses, ListsOfLightsLoseNothing) {
     const Scene scene = sceneWith({mediumBox(dvec3(3))}, {dmat4(1.0)});
     std::mt19937_64 engine(seed());

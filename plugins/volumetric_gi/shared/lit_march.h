@@ -46,13 +46,15 @@ fg::TextureHandle addLitMarch(fg::FrameGraph& graph, const plugin::FrameInputs& 
             },
             [](const Data& data, fg::PassContext& context) {
                 const MediaResources& media = data.march.pass.media;
-                auto command =
-                    context.compute(data.shader, {{"PHASE_GROUPS", int32_t(media.phaseGroups)},
-                                                  {"MEDIA_KINDS", mediaKinds(media, true)},
-                                                  {"SOFT_SHADOWS", data.lights.softShadows}});
-                bindMedia(bindLights(command, data.lights), media);
-                command.params(data.technique, "Technique");
-                bindLightMarch(command, data.march).dispatchOver(data.march.light);
+                marchInTurns(data.march.pass, context, [&](const gpu::MarchParams& params) {
+                    auto command =
+                        context.compute(data.shader, {{"PHASE_GROUPS", int32_t(media.phaseGroups)},
+                                                      {"MEDIA_KINDS", mediaKinds(media, true)},
+                                                      {"SOFT_SHADOWS", data.lights.softShadows}});
+                    bindMedia(bindLights(command, data.lights), media);
+                    command.params(data.technique, "Technique");
+                    bindLightMarch(command, data.march, params).dispatchOver(data.march.light);
+                });
             })
         .march.light;
 }
