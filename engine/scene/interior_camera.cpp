@@ -109,16 +109,47 @@ double meanDistance(const std::vector<Hit>& hits) {
     return sum / count;
 }
 
+double missed(const std::vector<Hit>& hits) {
+    const auto free = std::count_if(hits.begin(), hits.end(), [](const Hit& hit) {
+        return !std::isfinite(hit.distance);
+    });
+    return double(free) / double(hits.size());
+}
+
+/// The mean over the view: at the mean cosine of a surface that faces the lamp's side, ½.
+double seenByLamp(const Scene& scene, const Interior& interior, const dvec3& eye,
+                  const dvec3& ahead) {
+    const dquat rotation = rotationLookingAlong(ahead);
+    const double halfHeight = std::tan(0.5 * kFieldOfView), halfWidth = halfHeight * 16 / 9;
+    std::vector<dvec3> directions;
+    for (int i = 0; i < kRays; ++i) {
+        const double x = (i + 0.5) / kRays, y = i * 0.61803399 - std::floor(i * 0.61803399);
+        directions.push_back(glm::normalize(
+            rotation * dvec3((2 * x - 1) * halfWidth, (2 * y - 1) * halfHeight, -1)));
+    }
+    const std::vector<Hit> hits = cast(scene, eye, directions);
+    double sum = 0, count = 0;
+    for (size_t i = 0; i < hits.size(); ++i) {
+        if (!std::isfinite(hits[i].distance)) continue;
+        const double distance =
+            glm::length(eye + hits[i].distance * directions[i] - interior.middle);
+        const double ratio = interior.reach / std::max(distance, 0.5 * interior.reach);
+        sum += 0.5 * ratio * ratio;
+        ++count;
+    }
+    return count > 0 ? sum / count : 0.5;
+}
+
 } // namespace
 
-std::optional<SuppliedLamp> supplyCameraInside(LoadedScene& loaded) {
+std::optional<Interior> supplyCameraInside(LoadedScene& loaded) {
     Scene& scene = loaded.scene;
     const Bounds bounds = scene.worldBounds();
     if (scene.activeCamera != kNone || bounds.empty()) return {};
     dvec3 eye = bounds.centre();
     const std::vector<Hit> fromMiddle = cast(scene, eye, allAround());
     if (!isInside(fromMiddle)) return {};
-    const SuppliedLamp lamp{eye, meanDistance(fromMiddle)};
+    Interior interior{eye, meanDistance(fromMiddle), missed(fromMiddle), 0};
 
     const std::vector<Hit> vertical = cast(scene, eye, {dvec3(0, -1, 0), dvec3(0, 1, 0)});
     const double floor = std::max(eye.y - vertical[0].distance, bounds.minimum.y);
@@ -152,7 +183,8 @@ std::optional<SuppliedLamp> supplyCameraInside(LoadedScene& loaded) {
     scene.activeCamera = int(scene.nodes.size());
     scene.nodes.push_back(std::move(node));
     loaded.supplied.push_back("a camera inside the scene, which is closed around its middle");
-    return lamp;
+    interior.seenByLamp = seenByLamp(scene, interior, eye, sides[ahead]);
+    return interior;
 }
 
 } // namespace tyndall

@@ -33,10 +33,10 @@ Result<void> readGltfFile(LoadedScene& loaded, const fs::path& path, const LoadO
     if (auto mounted = GltfMounts().mount(loaded, 0, path, options); !mounted) return mounted;
     for (size_t i = 0; i < loaded.scene.nodes.size() && loaded.scene.activeCamera == kNone; ++i)
         if (loaded.scene.nodes[i].camera != kNone) loaded.scene.activeCamera = int(i);
-    const auto lamp = supplyCameraInside(loaded);
+    const std::optional<Interior> interior = supplyCameraInside(loaded);
     supplyCamera(loaded);
-    supplyLight(loaded, lamp);
-    supplyExposure(loaded);
+    const bool lamp = supplyLight(loaded, interior);
+    supplyExposure(loaded, lamp ? interior : std::nullopt);
     return {};
 }
 

@@ -79,9 +79,9 @@ void supplyCamera(LoadedScene& loaded) {
                                     "are far away from it");
 }
 
-void supplyLight(LoadedScene& loaded, const std::optional<SuppliedLamp>& lamp) {
+bool supplyLight(LoadedScene& loaded, const std::optional<Interior>& interior) {
     Scene& scene = loaded.scene;
-    if (emits(scene)) return;
+    if (emits(scene)) return false;
     Light sun;
     sun.name = "supplied sun";
     sun.type = LightType::Directional;
@@ -95,21 +95,22 @@ void supplyLight(LoadedScene& loaded, const std::optional<SuppliedLamp>& lamp) {
     scene.environment.radiance = vec3(float(kSkyNits));
     loaded.supplied.push_back(
         fmt::format("a sun of {} lux and a sky of {} nits", kSunLux, kSkyNits));
-    if (!lamp) return;
+    if (!interior) return false;
     Light inside; // as bright on what is around it as the sun is outside
     inside.name = "supplied lamp";
-    inside.intensity = float(std::min(kSunLux * lamp->reach * lamp->reach, 1e30));
+    inside.intensity = float(std::min(kSunLux * interior->reach * interior->reach, 1e30));
     Node holder;
     holder.name = inside.name;
-    holder.translation = lamp->position;
+    holder.translation = interior->middle;
     holder.light = int(scene.lights.size());
     loaded.supplied.push_back(
         fmt::format("a lamp of {:.3g} candela in the middle", double(inside.intensity)));
     scene.lights.push_back(std::move(inside));
     scene.nodes.push_back(std::move(holder));
+    return true;
 }
 
-void supplyExposure(LoadedScene& loaded) {
+void supplyExposure(LoadedScene& loaded, const std::optional<Interior>& interior) {
     Scene& scene = loaded.scene;
     const Bounds bounds = reachOfLargest(findClusters(scene)).surroundings;
     const dvec3 centre = bounds.empty() ? dvec3(0) : bounds.centre();
@@ -127,6 +128,9 @@ void supplyExposure(LoadedScene& loaded) {
     for (const Mesh& mesh : scene.meshes)
         brightest = std::max(brightest, luminance(scene.materialOf(mesh).emissive));
     lux += 0.1 * kPi * brightest; // an emitter that fills a tenth of the view
+    if (interior) // the sun and the sky come in by the openings
+        lux = kSunLux * interior->seenByLamp +
+              interior->open * (kSunLux + kPi * luminance(scene.environment.radiance));
     if (!(lux > 0) || !std::isfinite(lux)) return;
     scene.ev100 = float(std::round(2 * std::clamp(std::log2(lux / 2.5), -20.0, 40.0)) / 2);
     loaded.supplied.push_back(fmt::format("an exposure of EV100 {} for the {:.3g} lux that arrive",

@@ -233,7 +233,7 @@ TEST_P(LightsOnPoints, EnvironmentIsItsLights) {
     maker.scene.environment.radiance = vec3(2);
     const std::vector<Seen> medium = look(maker, {{{0, 0, 0}, {0, 0, 0}}});
     EXPECT_NEAR(double(medium[0].lit), 8 * kPi, 1e-3) << "4πL";
-    EXPECT_EQ(lights().lights().size(), 16u);
+    EXPECT_EQ(lights().lights().size(), 32u) << "at high quality";
     ProbeOptions options;
     options.converge = true;
     options.frames = 256;

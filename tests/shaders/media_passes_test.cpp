@@ -382,6 +382,34 @@ TEST_P(MediaPasses, ListsOfLightsLoseNothing) {
         }
 }
 
+TEST_P(MediaPasses, TurnsOfAMarchLoseNothing) {
+    // Cell by cell, with each light's way through the cells: more rounds of loops than a driver may allow (plugin/shader_rounds.h), but for one light alone.
+    const Scene scene = sceneWith({puff()}, {dmat4(1.0)});
+    system->settings().integration = MediaIntegration::Exact;
+    system->settings().lightOpticalDepth = LightOpticalDepth::Exact;
+    system->settings().smooth = false;
+    std::mt19937_64 engine(seed());
+    std::uniform_real_distribution<float> place(-3, 3);
+    for (int i = 0; i < 12; ++i) addLamp(vec3(place(engine), place(engine), place(engine)));
+    const std::vector<gpu::LightData> all = lights;
+    for (const MarchResolution resolution : {MarchResolution::Full, MarchResolution::Half}) {
+        system->settings().resolution = resolution;
+        lights = all;
+        const Image together = render(scene, 24, 18).inScatter;
+        std::vector<double> sum(24 * 18, 0.0);
+        for (const gpu::LightData& light : all) {
+            lights = {light};
+            const Image alone = render(scene, 24, 18).inScatter;
+            for (size_t i = 0; i < sum.size(); ++i)
+                sum[i] += double(alone.at(int(i % 24), int(i / 24))[0]);
+        }
+        for (size_t i = 0; i < sum.size(); ++i)
+            EXPECT_NEAR(double(together.at(int(i % 24), int(i / 24))[0]), sum[i],
+                        1e-4 * sum[i] + 1e-12)
+                << i << ", resolution " << int(resolution) << ", seed " << seed();
+    }
+}
+
 TEST_P(MediaPasses, SaysWhyNothingIsMarched) {
     addSun(vec3(0, -1, 0));
     EXPECT_EQ(render(Scene{}, 8, 8).marchReason, "no medium in the scene");
