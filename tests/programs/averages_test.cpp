@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "core/image.h"
 #include "programs/process.h"
 #include "support/content.h"
 
