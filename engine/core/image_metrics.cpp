@@ -6,10 +6,11 @@
 
 #include <fmt/format.h>
 
+#include "core/math.h"
+
 namespace tyndall {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 std::array<double, 4> channelMeans(const Image& image) {

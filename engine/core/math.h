@@ -31,13 +31,19 @@ using glm::vec3;
 using glm::vec4;
 
 inline constexpr double kPi = 3.14159265358979323846;
+inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 inline float maximumOf(const vec3& v) { return glm::max(v.x, glm::max(v.y, v.z)); }
 
 /// Axis-aligned box; empty when minimum > maximum (the default).
 struct Bounds {
-    dvec3 minimum{std::numeric_limits<double>::infinity()};
-    dvec3 maximum{-std::numeric_limits<double>::infinity()};
+    dvec3 minimum{kInfinity};
+
+/// What both have; empty where they do not meet.
+inline Bounds intersection(const Bounds& a, const Bounds& b) {
+    return {glm::max(a.minimum, b.minimum), glm::min(a.maximum, b.maximum)};
+}
+    dvec3 maximum{-kInfinity};
     [[nodiscard]] bool empty() const {
         return !(minimum.x <= maximum.x && minimum.y <= maximum.y && minimum.z <= maximum.z);
     }

@@ -11,8 +11,6 @@ namespace tyndall {
 
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
 /// Where a ray is inside something convex: [begin,end], empty when end ≤ begin.
 struct Interval {
     double begin = 0, end = 0;

@@ -98,8 +98,8 @@ LightSpace lightSpaceOf(const dvec3& forward, const Casters& casters) {
     LightSpace space;
     space.forward = forward;
     perpendiculars(forward, space.right, space.up);
-    dvec3 low(std::numeric_limits<double>::infinity()),
-        high(-std::numeric_limits<double>::infinity());
+    dvec3 low(kInfinity),
+        high(-kInfinity);
     for (int i = 0; i < 8; ++i) {
         const dvec3 corner((i & 1) ? casters.near.maximum.x : casters.near.minimum.x,
                            (i & 2) ? casters.near.maximum.y : casters.near.minimum.y,

@@ -1,7 +1,6 @@
 // A camera inside of an interior. Rays from one point are tested against all triangles in one pass, so that no tree is needed.
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "scene/zero_config.h"
 
@@ -17,7 +16,7 @@ constexpr double kEyeHeight = 1.6;    // metres
 constexpr double kEyeOfHeight = 0.13; // 1.6 m in a hall of 12 m, whatever unit the hall was made in
 
 struct Hit {
-    double distance = std::numeric_limits<double>::infinity();
+    double distance = kInfinity;
     bool front =
         false; // by the order of the corners (glTF 2.0 section 3.7.2.1), whether the material is two-sided or not
 };
@@ -167,7 +166,7 @@ std::optional<Interior> supplyCameraInside(LoadedScene& loaded) {
         if (free(i) > free(ahead)) ahead = i;
     // From further back more of the room is in the picture.
     eye -= 0.7 * free(ahead + sides.size() / 2) * sides[ahead];
-    double nearest = std::numeric_limits<double>::infinity();
+    double nearest = kInfinity;
     for (const Hit& hit : cast(scene, eye, allAround())) nearest = std::min(nearest, hit.distance);
 
     Camera camera;

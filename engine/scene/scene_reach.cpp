@@ -7,7 +7,6 @@
 namespace tyndall {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kWidestGap = 4;     // times the longest side of a cluster
 constexpr size_t kMostClusters = 64; // more would cost more than they save
 constexpr double kSpeck = 0.01;      // size over distance
@@ -29,10 +28,6 @@ double gap(const Bounds& a, const Bounds& b) {
 
 Bounds inflated(const Bounds& b, double by) {
     return b.empty() ? b : Bounds{b.minimum - by, b.maximum + by};
-}
-
-Bounds intersection(const Bounds& a, const Bounds& b) {
-    return {glm::max(a.minimum, b.minimum), glm::min(a.maximum, b.maximum)};
 }
 
 /// How far light goes in a homogeneous medium, of the channel in which it goes farthest.

@@ -6,8 +6,6 @@
 
 namespace tyndall::tracing {
 
-inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
 struct Ray {
     dvec3 origin{0};
     dvec3 direction{0, 0, -1}; // unit

@@ -32,10 +32,6 @@ constexpr TermSet kSets[] = {kIndirectOnSurfaces | kIndirectInMedia,
 
 constexpr double kLeastPower = 1e-25; // watts of all lights; units for less would overflow
 
-Bounds intersection(const Bounds& a, const Bounds& b) {
-    return {glm::max(a.minimum, b.minimum), glm::min(a.maximum, b.maximum)};
-}
-
 PlacementRequest placementOf(const plugin::FrameInputs& inputs, const LpvSettings& settings) {
     PlacementRequest request;
     request.bounds = boundsOf(inputs.scene.boundsMinimum, inputs.scene.boundsMaximum);
