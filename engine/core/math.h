@@ -38,11 +38,6 @@ inline float maximumOf(const vec3& v) { return glm::max(v.x, glm::max(v.y, v.z))
 /// Axis-aligned box; empty when minimum > maximum (the default).
 struct Bounds {
     dvec3 minimum{kInfinity};
-
-/// What both have; empty where they do not meet.
-inline Bounds intersection(const Bounds& a, const Bounds& b) {
-    return {glm::max(a.minimum, b.minimum), glm::min(a.maximum, b.maximum)};
-}
     dvec3 maximum{-kInfinity};
     [[nodiscard]] bool empty() const {
         return !(minimum.x <= maximum.x && minimum.y <= maximum.y && minimum.z <= maximum.z);
@@ -71,5 +66,10 @@ inline Bounds intersection(const Bounds& a, const Bounds& b) {
         return result;
     }
 };
+
+/// What both have; empty where they do not meet.
+inline Bounds intersection(const Bounds& a, const Bounds& b) {
+    return {glm::max(a.minimum, b.minimum), glm::min(a.maximum, b.maximum)};
+}
 
 } // namespace tyndall

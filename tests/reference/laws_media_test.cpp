@@ -32,7 +32,7 @@ TEST(ReferenceMedia, AnUnevenAbsorberOfThreeColoursLetsEachThroughByItsOwnDepth)
     ASSERT_GT(depth.y, 0.1);
     Sampler unused(0, 0, 0);
     const dvec3 exact =
-        tracing::transmittance(*stage->traced.media, {kEye, direction}, tracing::kInfinity,
+        tracing::transmittance(*stage->traced.media, {kEye, direction}, kInfinity,
                                  tracing::TransmittanceMode::Exact, unused);
     for (int c = 0; c < 3; ++c) {
         const double expected = std::exp(-depth[c]);
@@ -47,7 +47,7 @@ TEST(ReferenceMedia, AnUnevenAbsorberOfThreeColoursLetsEachThroughByItsOwnDepth)
         tracked.segmentsPerSample = 4;
         tracked.sample = [&, c](Tracers&, Sampler& sampler) {
             return tracing::transmittance(*stage->traced.media, {kEye, direction},
-                                            tracing::kInfinity,
+                                            kInfinity,
                                             tracing::TransmittanceMode::Ratio, sampler)[c];
         };
         const Estimate ratio = measure(tracked, effort, 200 + uint64_t(c));

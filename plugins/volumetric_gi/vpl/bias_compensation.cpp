@@ -26,7 +26,7 @@ tracing::RayHit BiasCompensation::opaqueHit(const tracing::CameraRays::CameraRay
     tracing::RayHit hit;
     double nearest = start.nearest;
     do {
-        hit = surfaces.intersect(start.ray, nearest, tracing::kInfinity, tracing::RayKind::Camera,
+        hit = surfaces.intersect(start.ray, nearest, kInfinity, tracing::RayKind::Camera,
                                  sampler.bits());
         nearest = hit.distance * (1 + kPassed);
     } while (hit.found() &&

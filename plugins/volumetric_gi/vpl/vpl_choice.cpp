@@ -86,7 +86,7 @@ std::vector<SeenPoint> seenPoints(const gpu::ViewData& view,
         tracing::Sampler sampler(seed, 1, i);
         const auto [ray, nearest] = eyeRay(view, 2.0 * sampler.next2() - 1.0);
         const tracing::RayHit hit = surfaces.intersect(
-            ray, nearest, tracing::kInfinity, tracing::RayKind::Camera, sampler.bits());
+            ray, nearest, kInfinity, tracing::RayKind::Camera, sampler.bits());
         segment.start(ray, hit.distance);
         tracing::PathWeights weights;
         const auto flight = segment.fly(sampler, weights, there, emitted);

@@ -49,11 +49,11 @@ std::vector<uint32_t> makeVisibilityMaps(const tracing::SurfaceScene& surfaces, 
             const bool onSurface = light.position.w < 0;
             const dvec3 normal(light.normal);
             const dvec3 origin = set.positions[i] + set.margins[i] * normal;
-            double nearest = tracing::kInfinity;
+            double nearest = kInfinity;
             for (size_t k = 0; k < texels; ++k) {
                 if (onSurface && glm::dot(normal, directions[k]) < lowest) continue;
                 const tracing::RayHit hit =
-                    surfaces.intersect({origin, directions[k]}, 0, tracing::kInfinity,
+                    surfaces.intersect({origin, directions[k]}, 0, kInfinity,
                                        tracing::RayKind::Path, tracing::mixBits(k));
                 if (!hit.found()) continue;
                 maps[i * stride + k] =

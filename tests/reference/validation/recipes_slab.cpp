@@ -81,7 +81,7 @@ Computed directTransmittance(double albedo, double anisotropy, double tau,
     const auto through = [&](double mu) {
         Sampler unused(0, 0, 0);
         return tracing::transmittance(*stage->traced.media, {dvec3(0), downwards(mu)},
-                                        tracing::kInfinity, tracing::TransmittanceMode::Exact,
+                                        kInfinity, tracing::TransmittanceMode::Exact,
                                         unused)
             .y;
     };

@@ -64,7 +64,7 @@ Recipe meanSquareRecipe(const Row& row) {
         Walk walk(*stage, {}, sampler);
         for (int i = 0; i < collisions; ++i) {
             if (i > 0) walk.turn();
-            walk.fly(tracing::kInfinity);
+            walk.fly(kInfinity);
         }
         return glm::dot(walk.ray().origin, walk.ray().origin);
     };
@@ -82,7 +82,7 @@ Recipe fluenceMomentRecipe(const Row& row) {
         Walk walk(*stage, {}, sampler);
         double sum = 0;
         for (double carried = 1; carried > kNothing; carried = walk.carried()) {
-            walk.fly(tracing::kInfinity);
+            walk.fly(kInfinity);
             sum += carried * glm::dot(walk.ray().origin, walk.ray().origin);
             walk.turn();
         }
@@ -106,7 +106,7 @@ Recipe farFluenceRecipe(const Row& row) {
         Walk walk(*stage, {}, sampler);
         double sum = 0;
         for (double carried = 1; carried > kNothing;) {
-            walk.fly(tracing::kInfinity);
+            walk.fly(kInfinity);
             walk.turn();
             carried = walk.carried(); // less what this collision absorbs
             const double x = glm::length(walk.ray().origin);
@@ -125,7 +125,7 @@ Recipe farFluenceRecipe(const Row& row) {
 
 /// Where a ray from within leaves the cube [-½,½]³.
 double exitOf(const Ray& ray) {
-    double exit = tracing::kInfinity;
+    double exit = kInfinity;
     for (int axis = 0; axis < 3; ++axis) {
         const double d = ray.direction[axis], face = d > 0 ? 0.5 : -0.5;
         if (d != 0) exit = std::min(exit, (face - ray.origin[axis]) / d);

@@ -18,7 +18,7 @@ constexpr double kRepeatFactor = 4;
 double tOf(const Row& row, const Estimate& estimate) {
     const double margin = row.published ? 0 : row.margin, apart = estimate.value - row.expected;
     const double error = std::hypot(estimate.error, margin);
-    return error > 0 ? apart / error : (apart == 0 ? 0 : tracing::kInfinity);
+    return error > 0 ? apart / error : (apart == 0 ? 0 : kInfinity);
 }
 
 bool passes(const Row& row, const Estimate& estimate) {
