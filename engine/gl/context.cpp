@@ -149,7 +149,7 @@ Result<Context> Context::create(const ContextOptions& options) {
     Result<Context> context = tryInOrder(candidates, options, failures);
     if (context && !failures.empty())
         context->state_->choice =
-            fmt::format("rendering with {} because these were not to be had: {}",
+            fmt::format("rendering with {}; not available: {}",
                         context->backendName(), failures);
     return context;
 }

@@ -1,7 +1,7 @@
 #include "renderer/medium_march_pass.h"
 
 #include "plugin/reduced_march.h"
-#include "plugin/smooth_march.h"
+#include "renderer/march_smoothing_pass.h"
 
 namespace tyndall {
 namespace {
@@ -124,8 +124,8 @@ MediumMarch addTransmittancePass(fg::FrameGraph& graph, const MediaFrame& frame,
 gpu::MarchParams marchParams(const MediaSettings& settings) {
     gpu::MarchParams params{};
     params.endSegment = gpu::kMarchAllSegments;
-    params.flags = (settings.refine ? gpu::kMarchRefine : 0u) |
-                   (settings.smooth ? gpu::kMarchSmooth : 0u);
+    params.flags =
+        (settings.refine ? gpu::kMarchRefine : 0u) | (settings.smooth ? gpu::kMarchSmooth : 0u);
     params.factor = 1u << uint32_t(settings.resolution);
     params.depthTolerance = settings.depthTolerance;
     params.transmittanceTolerance = settings.transmittanceTolerance;
@@ -149,8 +149,9 @@ MediumMarch addMediumMarchPass(fg::FrameGraph& graph, const MediaFrame& frame,
         int(params.factor), false, [&](MarchStage stage, const MediumMarch& before) {
             MediumMarch images = addStage(graph, frame, inputs, params, skip, stage, before);
             if (!skip && inScatter && stage == MarchStage::Squares)
-                images.inScatter = addMarchSmoothing(graph, "media.smooth", inputs.view, inputs.depth,
-                                                     params, images.transmittance, images.inScatter);
+                images.inScatter =
+                    addMarchSmoothingPass(graph, inputs.view, params,
+                                          {inputs.depth, images.transmittance, images.inScatter});
             return images;
         });
     if (!skip) return march;

@@ -109,9 +109,8 @@ double meanDistance(const std::vector<Hit>& hits) {
 }
 
 double missed(const std::vector<Hit>& hits) {
-    const auto free = std::count_if(hits.begin(), hits.end(), [](const Hit& hit) {
-        return !std::isfinite(hit.distance);
-    });
+    const auto free = std::count_if(hits.begin(), hits.end(),
+                                    [](const Hit& hit) { return !std::isfinite(hit.distance); });
     return double(free) / double(hits.size());
 }
 

@@ -80,8 +80,7 @@ Result<Assignment> parseAssignment(std::string_view item, std::span<const Techni
     const std::string_view name = item.substr(equals + 1);
     const int owner = findTechnique(name, techniques);
     if (owner == kNobody) return unknownTechnique(name, techniques);
-    const TermSet claims =
-        owner == kDirectPasses ? kDirectTerms : techniques[size_t(owner)].claims;
+    const TermSet claims = owner == kDirectPasses ? kDirectTerms : techniques[size_t(owner)].claims;
     if (*terms & ~claims)
         return Error{"technique '" + std::string(name) + "' does not compute " +
                      termNames(*terms & ~claims) + ": it claims " + termNames(claims)};
@@ -197,8 +196,8 @@ int bestFor(const Choice& choice, std::span<const Technique> techniques) {
         if (!technique.automatic || count == 0 || !technique.accepts(share, choice.possible) ||
             technique.expected[size_t(choice.scene)].cost > kMostCost)
             continue;
-        if (count < most ||
-            (count == most && !(errorOf(technique, choice) < errorOf(techniques[size_t(best)], choice))))
+        if (count < most || (count == most && !(errorOf(technique, choice) <
+                                                errorOf(techniques[size_t(best)], choice))))
             continue;
         best = int(i);
         most = count;
@@ -234,8 +233,10 @@ void chooseAndExplain(FramePlan& plan, std::span<const Technique> techniques, Sc
                   shortNumber(errorOf(technique, choice)) + ")";
     }
     if (plan.technique.empty()) plan.technique = "none";
-    plan.why = !chosen.empty() ? "auto: " + chosen + ": measured best among the quick ones for " +
-                                     sceneClassText(scene)
+    plan.why = !chosen.empty()
+                   ? "auto: " + chosen + "; of the techniques that take at most " +
+                         std::to_string(int(kMostCost)) +
+                         " times direct light, least measured error for " + sceneClassText(scene)
                : indirect == 0 ? "auto: the scene has direct light alone"
                                : "auto: no technique here computes " + termNames(indirect);
 }
@@ -245,7 +246,7 @@ Result<void> decide(FramePlan& plan, std::string_view gi, std::span<const Techni
     give(plan, kDirectTerms, kDirectPasses);
     if (gi.find('=') != std::string_view::npos) {
         plan.technique = std::string(gi);
-        plan.why = "assigned, term by term";
+        plan.why = "techniques by term, as asked for";
         return assign(plan, gi, techniques);
     }
     if (gi == "none") {
@@ -262,7 +263,7 @@ Result<void> decide(FramePlan& plan, std::string_view gi, std::span<const Techni
     const Technique& technique = techniques[size_t(owner)];
     give(plan, technique.claims & ~kDirectTerms, owner, technique.media);
     plan.technique = std::string(gi);
-    plan.why = "asked for";
+    plan.why = "technique " + plan.technique + ", as asked for";
     return {};
 }
 
@@ -270,9 +271,8 @@ Result<void> decide(FramePlan& plan, std::string_view gi, std::span<const Techni
 
 bool Technique::accepts(TermSet terms, TermSet possible) const {
     if (sets.empty()) return (terms & ~claims) == 0;
-    return std::any_of(sets.begin(), sets.end(), [&](TermSet set) {
-        return (set & possible) == (terms & possible);
-    });
+    return std::any_of(sets.begin(), sets.end(),
+                       [&](TermSet set) { return (set & possible) == (terms & possible); });
 }
 
 TermSet FramePlan::termsOf(int index) const {
@@ -352,7 +352,8 @@ Result<FramePlan> makePlan(std::string_view gi, TermSet wanted,
     plan.wanted = wanted;
     plan.possible = possibleTerms(traits);
     plan.kinds = traits.scatteringMedia ? traits.kinds : 0;
-    if (Result<void> done = decide(plan, gi, techniques, traits.sceneClass()); !done.ok()) return done.error();
+    if (Result<void> done = decide(plan, gi, techniques, traits.sceneClass()); !done.ok())
+        return done.error();
     if (Result<void> fits = checkSets(plan, techniques); !fits.ok()) return fits.error();
     if (Result<void> fits = checkKinds(plan, techniques); !fits.ok()) return fits.error();
     for (uint32_t i = 0; i < kTermCount; ++i) {

@@ -29,27 +29,34 @@ PICTURES = [
 ]
 
 
+def rows_of(page):
+    """Of each picture that the page has."""
+    found = re.findall(r"([^\n]+\n`[^\n]+`\n\n!\[[^\n]*\]\([^\n]*/(\w+)\.jpg\)\n)", page)
+    return {name: row for row, name in found}
+
+
 def main():
     parser = harness.parser(__doc__, "gallery", 512, out="gallery")
     parser.add_argument("--scenes", default="")
     arguments = parser.parse_args()
     bench = harness.Bench(arguments)
     FOLDER.mkdir(parents=True, exist_ok=True)
-    rows = []
+    (ROOT / "out").mkdir(exist_ok=True)
+    readme = ROOT / "README.md"
+    rows = rows_of(readme.read_text())
     for name, scene, text in harness.chosen(PICTURES, arguments.scenes):
-        command = ["capture", scene, "-o", f"out/gallery/{name}.png", "--size", "960x540"]
+        command = ["capture", scene, "-o", f"out/{name}.png", "--size", "960x540"]
         subprocess.run([bench.program, *command, "--quiet"], check=True, cwd=ROOT)
-        subprocess.run(["convert", ROOT / f"out/gallery/{name}.png", "-quality", "90", FOLDER / f"{name}.jpg"], check=True)
+        subprocess.run(["convert", ROOT / f"out/{name}.png", "-quality", "90", FOLDER / f"{name}.jpg"], check=True)
         small, reference = bench.out / f"{name}.exr", bench.out / f"{name}.reference.exr"
         subprocess.run([bench.program, "capture", scene, "-o", small, "--size", "240x135", "--quiet"], check=True, cwd=ROOT)
         if not reference.exists():
             subprocess.run([bench.program, "reference", scene, "-o", reference, "--size", "240x135", "--spp", str(bench.spp), "--quiet"], check=True, cwd=ROOT)
         error, energy = bench.compare(small, reference)
-        rows.append(f"{text[0].upper()}{text[1:]}: relmse {error:.3f}, {100 * energy:.0f} % of the reference's light.\n"
-                    f"`tyndall {' '.join(command)}`\n\n![{text}](docs/images/gallery/{name}.jpg)\n")
-    readme = ROOT / "README.md"
+        rows[name] = (f"{text[0].upper()}{text[1:]}: relmse {error:.3f}, {100 * energy:.0f} % of the reference's light.\n"
+                      f"`tyndall {' '.join(command)}`\n\n![{text}](docs/images/gallery/{name}.jpg)\n")
     pattern = re.compile(re.escape(MARKS[0]) + ".*?" + re.escape(MARKS[1]), re.S)
-    readme.write_text(pattern.sub(lambda _: "\n".join([MARKS[0], *rows, MARKS[1]]), readme.read_text()))
+    readme.write_text(pattern.sub(lambda _: "\n".join([MARKS[0], *(rows[name] for name, *_ in PICTURES if name in rows), MARKS[1]]), readme.read_text()))
     print("wrote README.md")
 
 

@@ -20,8 +20,7 @@ struct Cloud {
 };
 
 fs::path writeCloud(const fs::path& folder, const Cloud& cloud) {
-    auto scene =
-        nlohmann::json::parse(readFile(sourceDir() / "content/cloud.scene.json").value());
+    auto scene = nlohmann::json::parse(readFile(sourceDir() / "content/cloud.scene.json").value());
     for (auto& node : scene["nodes"]) {
         if (node["name"] != "cloud") continue;
         auto& medium = node["medium"];
@@ -57,9 +56,8 @@ void expectSound(const Cloud& cloud, const std::string& technique, const std::st
 
 TEST(Averages, OfCloudsThatHardlyAbsorbAreNumbers) {
     if (std::getenv("TYNDALL_LONG_TESTS")) {
-        for (const auto& [quality, frames] :
-             {std::pair("low", 300), std::pair("medium", 200), std::pair("high", 8),
-              std::pair("ultra", 2)})
+        for (const auto& [quality, frames] : {std::pair("low", 300), std::pair("medium", 200),
+                                              std::pair("high", 8), std::pair("ultra", 2)})
             for (const char* technique : {"octaves", "lpv", "vpl"})
                 for (const double albedo : {0.98, 0.998, 1.0})
                     for (const double g : {-0.9, 0.0, 0.9})

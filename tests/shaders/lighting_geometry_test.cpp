@@ -267,7 +267,8 @@ TEST_P(GeometryShader, RectsHaveTheSolidAngleOfAPyramid) {
                                               inputs, expected.size(), uint32_t(expected.size()));
     for (size_t i = 0; i < expected.size(); ++i) {
         // Near the plane a difference of products of three lengths, each good to a float's 6e-8, is held against the height.
-        EXPECT_NEAR(double(values[i].x), expected[i], 2e-5 * expected[i] + 1e-6 / std::min(heights[i], 1.0))
+        EXPECT_NEAR(double(values[i].x), expected[i],
+                    2e-5 * expected[i] + 1e-6 / std::min(heights[i], 1.0))
             << "rect " << i;
         EXPECT_EQ(values[i].y, 0.0f) << "seen from behind, rect " << i;
     }

@@ -261,8 +261,9 @@ TEST_P(MediaMarch, BesideARectangleASingleFrameHasNoSpecks) {
         const dmat4 world(1.0);
         const Scene scene = sceneOf(std::span(&thin, 1), std::span(&world, 1));
         MediaCompute compute(scene, options);
-        const std::vector<vec4> values = compute.run(
-            library, kIncludes, kInScatter, rayInputs(dvec3(-3, 0, 0.1), dvec3(1, 0, 0), 6, 1), 4096);
+        const std::vector<vec4> values =
+            compute.run(library, kIncludes, kInScatter,
+                        rayInputs(dvec3(-3, 0, 0.1), dvec3(1, 0, 0), 6, 1), 4096);
         double exact = 0;
         constexpr int kPanels = 20000;
         for (int i = 0; i < kPanels; ++i) {

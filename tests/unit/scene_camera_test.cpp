@@ -107,7 +107,8 @@ TEST(SuppliedExposure, InARoomIsForWhatTheLampLights) {
     // The sun and the sky do not come in, and a room has no size that counts.
     const float room = box({-6, 0, -2}, {6, 3, 2}, true).scene.ev100;
     EXPECT_EQ(box({-600, 0, -200}, {600, 300, 200}, true).scene.ev100, room);
-    EXPECT_LT(double(room), std::log2(10 / 2.5)) << "most of it is further from the lamp than the nearest wall";
+    EXPECT_LT(double(room), std::log2(10 / 2.5))
+        << "most of it is further from the lamp than the nearest wall";
     // Outside the sun's 10 lux and the sky's π/2 arrive.
     EXPECT_NEAR(double(sphere(2, false).scene.ev100), std::log2((10 + 0.5 * kPi) / 2.5), 0.25);
 }
