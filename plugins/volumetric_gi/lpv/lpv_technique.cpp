@@ -171,7 +171,7 @@ const plugin::TechniqueInfo& LpvTechnique::info() const {
         .media = kAllMedia,
         .separatesMedia = 1,
         .automatic = 1,
-        .expected = {{7, 0.05f, 1}, {3, 0.18f, 0.06f}, {2, 2, 0.25f}, {2, 1, 1}}};
+        .expected = {{4, 0.05f, 1}, {4, 0.16f, 0.1f}, {2, 2, 0.18f}, {1, 1, 1}}};
     return kInfo;
 }
 

@@ -45,7 +45,7 @@ const plugin::TechniqueInfo& OctavesTechnique::info() const {
         .media = kAllMedia,
         .separatesMedia = 1,
         .automatic = 1,
-        .expected = {{1, 1, 1}, {4, 1, 3.2f}, {4, 1, 5.9f}, {5, 1, 0.03f}}};
+        .expected = {{1, 1, 1}, {4, 1, 7.5f}, {4, 1, 6.9f}, {4, 1, 0.03f}}};
     return kInfo;
 }
 

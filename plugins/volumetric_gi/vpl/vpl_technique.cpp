@@ -312,7 +312,7 @@ const plugin::TechniqueInfo& VplTechnique::info() const {
         .media = kAllMedia,
         .separatesMedia = 1,
         .automatic = 1,
-        .expected = {{11, 0.1f, 1}, {13, 1, 0.24f}, {6, 2.9f, 0.66f}, {14, 1, 0.53f}}};
+        .expected = {{8, 0.1f, 1}, {12, 1, 0.36f}, {3, 2.9f, 0.54f}, {11, 1, 0.53f}}};
     return kInfo;
 }
 
