@@ -9,7 +9,7 @@ CMAKE_FLAGS ?=
 TEST_FLAGS ?=
 
 .DEFAULT_GOAL := help
-.PHONY: help setup build demo test test-slow validation references package clean
+.PHONY: help setup build programs demo test test-slow validation references package clean
 
 help: ## say what there is to do
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "make %-11s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -21,7 +21,11 @@ build: setup ## build everything, optimised, into build/release
 	@cmake --preset release $(CMAKE_FLAGS)
 	@cmake --build $(BUILD) --parallel $(JOBS)
 
-demo: build ## render the demo scene with indirect light, without a display, to out/demo.png
+programs: setup ## build the programs alone, without the tests
+	@cmake --preset release $(CMAKE_FLAGS)
+	@cmake --build $(BUILD) --parallel $(JOBS) --target tyndall tyndall-grid-reader tyndall-editor
+
+demo: programs ## render the demo scene with indirect light, without a display, to out/demo.png
 	@mkdir -p out
 	@$(BUILD)/bin/tyndall capture content/demo.scene.json --size 640x360 -o out/demo.png --report out/demo.json
 	@echo "The picture is $(CURDIR)/out/demo.png; what it took is in $(CURDIR)/out/demo.json."
