@@ -148,7 +148,9 @@ MediumMarch addMediumMarchPass(fg::FrameGraph& graph, const MediaFrame& frame,
     const MediumMarch march = addMarchStages<MediumMarch>(
         int(params.factor), false, [&](MarchStage stage, const MediumMarch& before) {
             MediumMarch images = addStage(graph, frame, inputs, params, skip, stage, before);
-            if (!skip && inScatter && stage == MarchStage::Squares)
+            // Grids have detail of their own, and no pattern.
+            const bool fog = (frame.resources.kinds & gpu::kMediaShapes) != 0;
+            if (!skip && inScatter && fog && stage == MarchStage::Squares)
                 images.inScatter =
                     addMarchSmoothingPass(graph, inputs.view, params,
                                           {inputs.depth, images.transmittance, images.inScatter});

@@ -338,6 +338,7 @@ TEST_P(MediaPasses, SingleFramesOfFogHaveNoPattern) {
         for (int y = 0; y < 72; ++y)
             for (int x = 0; x < 96; ++x)
                 sum += double(smooth.at(x, y)[0]), expected += double(rough.at(x, y)[0]);
+        // At the picture's border and the box's outline a mean over neighbours is not of all sides.
         EXPECT_NEAR(sum / expected, 1, 0.01) << int(resolution);
     }
 }
@@ -353,7 +354,7 @@ TEST_P(MediaPasses, OnlyFogInSingleFramesIsSmoothed) {
         return std::pair(rough, render(scene, 64, 48).inScatter);
     };
     const auto [grid, smoothGrid] = bothWays(sceneWith({puff()}, {dmat4(1.0)}), false);
-    EXPECT_LT(meanDifference(smoothGrid, grid), 1e-6);
+    EXPECT_EQ(meanDifference(smoothGrid, grid), 0) << "no fog: nothing to smooth";
     const auto [fog, smoothFog] = bothWays(sceneWith({mediumBox(dvec3(3))}, {dmat4(1.0)}), true);
     EXPECT_EQ(meanDifference(smoothFog, fog), 0);
     const auto [frame, smoothFrame] =
@@ -403,6 +404,7 @@ TEST_P(MediaPasses, TurnsOfAMarchLoseNothing) {
             for (size_t i = 0; i < sum.size(); ++i)
                 sum[i] += double(alone.at(int(i % 24), int(i / 24))[0]);
         }
+        // Rounding alone: sums of floats over some hundred segments, in another order.
         for (size_t i = 0; i < sum.size(); ++i)
             EXPECT_NEAR(double(together.at(int(i % 24), int(i / 24))[0]), sum[i],
                         1e-4 * sum[i] + 1e-12)
