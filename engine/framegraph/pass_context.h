@@ -93,7 +93,8 @@ public:
     virtual void targets(const Target* colors, uint32_t colorCount, const Target* depth) = 0;
     virtual void viewport(int32_t x, int32_t y, int32_t width, int32_t height) = 0;
     virtual void rasterState(const RasterState& state) = 0;
-    virtual void capture(BufferHandle into, BufferHandle count, uint64_t countOffset) = 0;
+    virtual void capture(BufferHandle into, BufferHandle count, uint64_t countOffset,
+                         uint64_t firstByte) = 0;
     virtual void draw(uint32_t vertexCount, uint32_t instanceCount, uint32_t firstVertex) = 0;
     virtual void drawIndirect(BufferHandle arguments, uint64_t byteOffset) = 0;
     virtual void drawGeometry(StaticGeometry geometry, uint32_t firstIndex, uint32_t indexCount,
@@ -206,12 +207,13 @@ public:
         context_->rasterState(s);
         return *this;
     }
-    /// What the last stage before rasterisation declares with `layout(xfb_offset = …) out` goes to `into`: tightly from its first byte on,
+    /// What the last stage before rasterisation declares with `layout(xfb_offset = …) out` goes to `into`: tightly from byte `firstByte` (a multiple of 4) on,
     /// draw after draw of this command, in the order of their primitives. What does not fit is dropped, by whole primitives.
     /// `count`, if given, gets the number of points, lines or triangles that were captured, as a uint at byte `countOffset`, when the
     /// command is over: with the next command, clear, copy, upload or barrier, or with the pass. Both are written as Access::Capture.
-    RasterCommand& capture(BufferHandle into, BufferHandle count = {}, uint64_t countOffset = 0) {
-        context_->capture(into, count, countOffset);
+    RasterCommand& capture(BufferHandle into, BufferHandle count = {}, uint64_t countOffset = 0,
+                           uint64_t firstByte = 0) {
+        context_->capture(into, count, countOffset, firstByte);
         return *this;
     }
     void draw(uint32_t vertices, uint32_t instances = 1, uint32_t firstVertex = 0) {

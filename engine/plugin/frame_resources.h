@@ -64,6 +64,13 @@ inline int32_t mediaKinds(const MediaResources& media, bool towardsLights) {
     return int32_t(kinds);
 }
 
+/// The define MEDIA_KINDS for light on surfaces: fewer variants than a march has, for it asks for optical depth once a light.
+inline int32_t surfaceMediaKinds(const MediaResources& media) {
+    if (media.count == 0) return 0;
+    const uint32_t kinds = uint32_t(mediaKinds(media, true)) & ~gpu::kMediaSingle;
+    return int32_t((kinds & gpu::kMediaGrids) != 0 ? kinds | gpu::kMediaShapes : kinds);
+}
+
 struct ViewResources {
     gpu::ViewData data;
     int32_t width = 0, height = 0;

@@ -23,7 +23,7 @@ struct Scene;
 namespace tyndall::plugin {
 
 /// Raised by one whenever anything that crosses the boundary changes its meaning.
-inline constexpr uint32_t kAbiVersion = 5;
+inline constexpr uint32_t kAbiVersion = 6;
 
 /// Description of a technique: the name that `--gi` takes, what it computes, and the figures that `auto` chooses by.
 struct TechniqueInfo {
@@ -81,11 +81,16 @@ struct SurfaceView {
 
 /// The triangles of one object, in its own space: what compute shaders read.
 struct SurfaceTriangles {
-    fg::StaticBuffer vertices;   // floats; a vertex begins with its position
-    fg::StaticBuffer indices;    // three a triangle
-    fg::StaticTexture baseColor; // of its material; white where that has none
+    fg::StaticBuffer vertices; // floats; a vertex begins with its position
+    fg::StaticBuffer indices;  // three a triangle
+    // Of its material; white where that has none.
+    fg::StaticTexture baseColor, metallicRoughness;
     uint32_t strideFloats, triangleCount;
+    // Floats from a vertex's beginning to its UV sets and its colour; 0: it has none.
+    uint32_t uvFloats[4], colorFloats;
     uint32_t object; // of `Objects` (shared/object.h), which names the material
+    uint32_t mesh;   // of FrameInputs::whole
+    mat4 renderFromLocal;
 };
 
 /// The scene's surfaces from any view, for reflective shadow maps and voxels. Good until the frame has been executed.

@@ -47,13 +47,6 @@ const char* whyNoDirectLight(const SurfaceLightInputs& inputs) {
     return nullptr;
 }
 
-/// Media of surface light: fewer variants than a march has, for it asks for optical depth once a light.
-int32_t surfaceMediaKinds(const MediaResources& media) {
-    if (media.count == 0) return 0;
-    const uint32_t kinds = uint32_t(mediaKinds(media, true)) & ~gpu::kMediaSingle;
-    return int32_t((kinds & gpu::kMediaGrids) != 0 ? kinds | gpu::kMediaShapes : kinds);
-}
-
 fg::TextureHandle addDirectPass(fg::FrameGraph& graph, const SurfaceLightInputs& inputs) {
     struct Data {
         ViewResources view;

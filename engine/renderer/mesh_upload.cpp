@@ -14,7 +14,7 @@ void packAttribute(PackedVertices& packed, const std::vector<Vector>& values, si
           "a mesh has an attribute with another number of values than it has positions");
     for (size_t i = 0; i < count; ++i)
         for (int c = 0; c < N; ++c)
-            packed.values[i * packed.strideFloats + offsetFloats + size_t(c)] = values[i][c];
+            packed.values[i * packed.layout.strideFloats + offsetFloats + size_t(c)] = values[i][c];
 }
 
 } // namespace
@@ -24,22 +24,23 @@ PackedVertices packVertices(const Mesh& mesh) {
     const auto declare = [&](VertexLocation location, uint32_t set, uint32_t components,
                              bool present) -> uint32_t {
         if (!present) return 0;
-        const uint32_t offset = packed.strideFloats;
+        const uint32_t offset = packed.layout.strideFloats;
         packed.attributes.push_back(
             {uint32_t(location) + set, components, fg::AttributeType::Float32, offset * 4});
-        packed.strideFloats += components;
+        packed.layout.strideFloats += components;
         return offset;
     };
     declare(VertexLocation::Position, 0, 3, true);
     const uint32_t normal = declare(VertexLocation::Normal, 0, 3, !mesh.normals.empty());
     const uint32_t tangent = declare(VertexLocation::Tangent, 0, 4, !mesh.tangents.empty());
-    std::array<uint32_t, kMaxUvSets> uv{};
+    auto& uv = packed.layout.uvFloats;
     for (uint32_t set = 0; set < uint32_t(kMaxUvSets); ++set)
         uv[set] = declare(VertexLocation::Uv0, set, 2, !mesh.uvs[set].empty());
-    const uint32_t color = declare(VertexLocation::Color, 0, 4, !mesh.colors.empty());
+    const uint32_t color = packed.layout.colorFloats =
+        declare(VertexLocation::Color, 0, 4, !mesh.colors.empty());
 
     const size_t count = mesh.positions.size();
-    packed.values.resize(count * packed.strideFloats);
+    packed.values.resize(count * packed.layout.strideFloats);
     packAttribute<3>(packed, mesh.positions, count, 0);
     if (!mesh.normals.empty()) packAttribute<3>(packed, mesh.normals, count, normal);
     if (!mesh.tangents.empty()) packAttribute<4>(packed, mesh.tangents, count, tangent);
@@ -86,11 +87,11 @@ Result<fg::StaticGeometry> MeshUpload::obtain(const Scene& scene, int index) {
     entry.indices = executor_.registerBuffer(name + " indices", std::move(*indices));
     fg::GeometryDesc desc;
     desc.vertices = entry.vertices;
-    desc.strideBytes = packed.strideFloats * 4;
+    desc.strideBytes = packed.layout.strideFloats * 4;
     desc.attributes = packed.attributes;
     desc.indices = entry.indices;
     entry.geometry = executor_.registerGeometry(name, desc);
-    entry.strideFloats = packed.strideFloats;
+    entry.layout = packed.layout;
     entry.version = mesh.version;
     entry.source = mesh.positions.data();
     return entry.geometry;

@@ -1,5 +1,7 @@
 #include "renderer/surface_drawer.h"
 
+#include <algorithm>
+
 #include "renderer/gbuffer_pass.h"
 #include "renderer/view.h"
 
@@ -15,8 +17,20 @@ void GpuSurfaceDrawer::update() {
 plugin::SurfaceTriangles GpuSurfaceDrawer::triangles(uint32_t set) const {
     const DrawItem& item = *sets_.at(set);
     const MeshUpload::Buffers buffers = scene_.buffers(item);
-    return {buffers.vertices,     buffers.indices,     scene_.textures(item.material).baseColor,
-            buffers.strideFloats, item.indexCount / 3, item.object};
+    const MaterialTextures& textures = scene_.textures(item.material);
+    plugin::SurfaceTriangles triangles{};
+    triangles.vertices = buffers.vertices;
+    triangles.indices = buffers.indices;
+    triangles.baseColor = textures.baseColor;
+    triangles.metallicRoughness = textures.metallicRoughness;
+    triangles.strideFloats = buffers.layout.strideFloats;
+    triangles.triangleCount = item.indexCount / 3;
+    std::ranges::copy(buffers.layout.uvFloats, triangles.uvFloats);
+    triangles.colorFloats = buffers.layout.colorFloats;
+    triangles.object = item.object;
+    triangles.mesh = uint32_t(item.mesh);
+    triangles.renderFromLocal = scene_.objectData()[item.object].renderFromLocal;
+    return triangles;
 }
 
 GBuffer GpuSurfaceDrawer::addGBuffer(fg::FrameGraph& graph, const char* name,

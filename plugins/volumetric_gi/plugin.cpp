@@ -8,7 +8,8 @@
 #define TYNDALL_TECHNIQUES(X)                                                                      \
     X(Octaves)                                                                                     \
     X(Lpv)                                                                                         \
-    X(Vpl)
+    X(Vpl)                                                                                         \
+    X(Surfels)
 
 namespace tyndall::volumetric_gi {
 

@@ -51,14 +51,6 @@ const float kPointsPerRadian = 2.5; // at which light is gathered, as the light 
 
 // ---- inside a segment ------------------------------------------------------------------------------------------
 
-/// Extinction is taken to change linearly over the segment, between the values at its ends.
-/// Fraction of the segment's optical depth before `x`.
-float depthFraction(Segment s, float x) {
-    float sum = s.extinctionStart + s.extinctionEnd;
-    if (sum <= 0.0) return x;
-    return x * (2.0 * s.extinctionStart + (s.extinctionEnd - s.extinctionStart) * x) / sum;
-}
-
 /// Light that blackbodies in the segment send back along the ray, seen from the segment's start. A flame's radiance changes tenfold
 /// from voxel to voxel: no one point stands for a segment. Averaged frames take a point anywhere in it (`u`: 0..1), which is
 /// unbiased; a single one takes the two of Gauss and Legendre.
@@ -81,19 +73,6 @@ struct GatherPoint {
     float fraction;
     vec3 weight;
 };
-
-/// The inverse of depthFraction(): where the fraction `f` of the optical depth lies before.
-float fractionAtDepth(Segment s, float f) {
-    float a = s.extinctionStart;
-    float b = s.extinctionEnd;
-    if (a + b <= 0.0) return f;
-    // Scaled, because squares of large coefficients overflow.
-    float scale = 1.0 / max(a, b);
-    a *= scale;
-    b *= scale;
-    float root = sqrt(max(a * a + f * (b * b - a * a), 0.0));
-    return clamp(f * (a + b) / max(a + root, 1e-20), 0.0, 1.0);
-}
 
 /// Evenly in scattered light, as for a light that is the same all along the segment: then the weight is the closed form, and
 /// exact. With coloured extinction, averaged frames sample each channel's own distribution, which is unbiased for

@@ -192,6 +192,27 @@ float gridSegment(uint m, LocalRay ray, float t0, float t1, out vec2 ends) {
     return density * (t1 - t0);
 }
 
+/// Extinction is taken to change linearly over the segment, between the values at its ends.
+/// Fraction of the segment's optical depth before `x`.
+float depthFraction(Segment s, float x) {
+    float sum = s.extinctionStart + s.extinctionEnd;
+    if (sum <= 0.0) return x;
+    return x * (2.0 * s.extinctionStart + (s.extinctionEnd - s.extinctionStart) * x) / sum;
+}
+
+/// The inverse of depthFraction(): where the fraction `f` of the optical depth lies before.
+float fractionAtDepth(Segment s, float f) {
+    float a = s.extinctionStart;
+    float b = s.extinctionEnd;
+    if (a + b <= 0.0) return f;
+    // Scaled, because squares of large coefficients overflow.
+    float scale = 1.0 / max(a, b);
+    a *= scale;
+    b *= scale;
+    float root = sqrt(max(a * a + f * (b * b - a * a), 0.0));
+    return clamp(f * (a + b) / max(a + root, 1e-20), 0.0, 1.0);
+}
+
 /// The kinds of media whose scattering segments have; the others take light away all the same. A technique that computes light in some kinds alone sets it.
 uint marchedMedia = 0xffffffffu;
 

@@ -19,7 +19,7 @@ TEST(PackVertices, HoldsWhatTheMeshHasAndNothingElse) {
     mesh.positions = {{1, 2, 3}, {4, 5, 6}};
     mesh.uvs[2] = {{0.25f, 0.5f}, {0.75f, 1.0f}};
     const PackedVertices packed = packVertices(mesh);
-    ASSERT_EQ(packed.strideFloats, 5u);
+    ASSERT_EQ(packed.layout.strideFloats, 5u);
     ASSERT_EQ(packed.attributes.size(), 2u);
     EXPECT_EQ(packed.attributes[0].location, 0u);
     EXPECT_EQ(packed.attributes[1].location, 5u); // UV set 2

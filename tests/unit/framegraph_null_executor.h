@@ -51,7 +51,7 @@ public:
     void targets(const Target*, uint32_t, const Target*) override { note("targets"); }
     void viewport(int32_t, int32_t, int32_t, int32_t) override { note("viewport"); }
     void rasterState(const RasterState&) override { note("state"); }
-    void capture(BufferHandle, BufferHandle count, uint64_t countOffset) override {
+    void capture(BufferHandle, BufferHandle count, uint64_t countOffset, uint64_t) override {
         note(count ? "capture, count at " + std::to_string(countOffset) : "capture");
     }
     void draw(uint32_t, uint32_t, uint32_t) override { note("draw"); }

@@ -4,14 +4,15 @@
 
 namespace tyndall::fg {
 
-void Capture::aim(const gl::Buffer& into, uint64_t bytes, const gl::Buffer* count,
-                  uint64_t countOffset) {
+void Capture::aim(const gl::Buffer& into, uint64_t firstByte, uint64_t bytes,
+                  const gl::Buffer* count, uint64_t countOffset) {
     end();
     into_ = into.id();
     count_ = count ? count->id() : 0;
     countOffset_ = countOffset;
     // GL wants whole words (OpenGL 4.5, section 13.2.1).
-    glBindBufferRange(GL_TRANSFORM_FEEDBACK_BUFFER, 0, into_, 0, GLsizeiptr(bytes / 4 * 4));
+    glBindBufferRange(GL_TRANSFORM_FEEDBACK_BUFFER, 0, into_, GLintptr(firstByte),
+                      GLsizeiptr(bytes / 4 * 4));
 }
 
 void Capture::begin(GLenum primitives) {

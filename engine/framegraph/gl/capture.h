@@ -11,8 +11,9 @@ namespace tyndall::fg {
 
 class Capture {
 public:
-    /// The next draws capture into the first `bytes` of `into`. The number of primitives goes to `count`, unless null, at `countOffset`.
-    void aim(const gl::Buffer& into, uint64_t bytes, const gl::Buffer* count, uint64_t countOffset);
+    /// The next draws capture into `bytes` of `into`, from `firstByte` on. The number of primitives goes to `count`, unless null, at `countOffset`.
+    void aim(const gl::Buffer& into, uint64_t firstByte, uint64_t bytes, const gl::Buffer* count,
+             uint64_t countOffset);
     [[nodiscard]] bool isAimed() const { return into_ != 0; }
     /// Before a draw that makes `primitives` (GL_POINTS, GL_LINES or GL_TRIANGLES). CHECKs that draws of one command make one kind.
     void begin(GLenum primitives);

@@ -72,7 +72,8 @@ public:
     void targets(const Target* colors, uint32_t colorCount, const Target* depth) override;
     void viewport(int32_t x, int32_t y, int32_t width, int32_t height) override;
     void rasterState(const RasterState& state) override;
-    void capture(BufferHandle into, BufferHandle count, uint64_t countOffset) override;
+    void capture(BufferHandle into, BufferHandle count, uint64_t countOffset,
+                 uint64_t firstByte) override;
     void draw(uint32_t vertexCount, uint32_t instanceCount, uint32_t firstVertex) override;
     void drawIndirect(BufferHandle arguments, uint64_t byteOffset) override;
     void drawGeometry(StaticGeometry geometry, uint32_t firstIndex, uint32_t indexCount,

@@ -94,7 +94,8 @@ void GlPassContext::setDiscard(bool on) {
 
 // --- draws ---
 
-void GlPassContext::capture(BufferHandle into, BufferHandle count, uint64_t countOffset) {
+void GlPassContext::capture(BufferHandle into, BufferHandle count, uint64_t countOffset,
+                            uint64_t firstByte) {
     if (!program_) return;
     CHECK(
         program_->captureStride() > 0,
@@ -104,6 +105,9 @@ void GlPassContext::capture(BufferHandle into, BufferHandle count, uint64_t coun
             passName(), program_->name()));
     check(into.resource, into.version, Touch::Capture, "capture");
     CHECK(!isAbsent(into), fmt::format("pass '{}' captures into something absent", passName()));
+    CHECK(firstByte % 4 == 0 && firstByte + 4 <= desc(into).bytes,
+          fmt::format("pass '{}' captures from byte {} of a buffer of {} on", passName(), firstByte,
+                      desc(into).bytes));
     const gl::Buffer* counter = nullptr;
     if (count) {
         check(count.resource, count.version, Touch::Capture, "capture count");
@@ -113,8 +117,8 @@ void GlPassContext::capture(BufferHandle into, BufferHandle count, uint64_t coun
                           passName(), countOffset, desc(count).bytes));
         counter = &world_.storageOf(count.resource, count.version).buffer;
     }
-    capture_.aim(world_.storageOf(into.resource, into.version).buffer, desc(into).bytes, counter,
-                 countOffset);
+    capture_.aim(world_.storageOf(into.resource, into.version).buffer, firstByte, desc(into).bytes - firstByte,
+                 counter, countOffset);
 }
 
 GLenum GlPassContext::topology() const {

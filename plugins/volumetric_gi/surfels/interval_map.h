@@ -1,0 +1,35 @@
+#pragma once
+// The transmittance interval map of the eye rays.
+
+#include "plugin/plugin_api.h"
+#include "plugin/reduced_march.h"
+#include "shared/surfels.h"
+
+namespace tyndall::volumetric_gi {
+
+/// For shaders that include gi/surfels/interval_map.glsl. Null handles: there is no medium in view.
+struct SurfelIntervals {
+    fg::TextureHandle ways;      // RGBA32F a ray: start and length of the way through media, metres; opacity
+    fg::TextureHandle totals;    // RGBA32F array, a layer a phase function: light that the ray scatters, of light from all around
+    fg::TextureHandle intervals; // RGBA16 array, layers by interval and phase function: place, shares of the total
+    gpu::SurfelMapParams params{};
+    gpu::MarchParams march{}; // which pixel a ray is of
+};
+
+/// Adds the pass `gi.surfels.intervals`. `factor`: pixels along an edge of the square that a ray stands for; `count`: intervals of a ray.
+[[nodiscard]] SurfelIntervals addSurfelIntervals(fg::FrameGraph& graph,
+                                                 const plugin::FrameInputs& inputs, int factor,
+                                                 uint32_t count, bool jitter);
+
+/// Declares that a pass reads the map; the result is what bindIntervals() takes.
+[[nodiscard]] SurfelIntervals readIntervals(fg::Builder& builder, const SurfelIntervals& map);
+
+template <typename Command> Command& bindIntervals(Command& command, const SurfelIntervals& map) {
+    return command.params(map.params, "IntervalMap")
+        .params(map.march)
+        .bind("ways", map.ways)
+        .bind("totals", map.totals)
+        .bind("intervals", map.intervals);
+}
+
+} // namespace tyndall::volumetric_gi

@@ -1,0 +1,34 @@
+#pragma once
+// Light of surfels in the intervals of eye rays: splats into the interleaved framebuffer, and back to pixels.
+
+#include "volumetric_gi/shared/traced_scene.h"
+#include "volumetric_gi/surfels/interval_map.h"
+#include "volumetric_gi/surfels/surfel_points.h"
+
+namespace tyndall::volumetric_gi {
+
+struct SplatRequest {
+    SurfelLight surfels;
+    SurfelIntervals map;
+    fg::BufferHandle interleave; // interleaveTables()
+    TracedBuffers traced;        // null handles: visibility is not asked for
+    Bounds media;                // render space; empty: everywhere
+    uint32_t levels = 1;
+    double threshold = 0;
+    SurfelRays rays = SurfelRays::None;
+    bool attenuation = false, visibility = false, paper = false;
+    uint64_t chance = 0; // of this frame
+};
+
+/// Adds the pass `gi.surfels.splat`. RGBA32F array, a layer a level: nits that reach the eye, w: how many surfels have come to the ray.
+[[nodiscard]] fg::TextureHandle addSurfelSplats(fg::FrameGraph& graph,
+                                                const plugin::FrameInputs& inputs,
+                                                const SplatRequest& request);
+
+/// Adds the passes `gi.surfels.collect` and `gi.surfels.upsample`. View-sized RGBA32F nits that reach the eye.
+[[nodiscard]] fg::TextureHandle addSurfelCollect(fg::FrameGraph& graph,
+                                                 const plugin::FrameInputs& inputs,
+                                                 const SplatRequest& request,
+                                                 fg::TextureHandle levels, bool blur);
+
+} // namespace tyndall::volumetric_gi

@@ -1,0 +1,146 @@
+#include "volumetric_gi/surfels/surfels_technique.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "framegraph/hash.h"
+#include "plugin/cache_key.h"
+#include "plugin/cached_upload.h"
+#include "scene/scene.h"
+#include "volumetric_gi/shared/scene_bounds.h"
+#include "volumetric_gi/surfels/interleave.h"
+
+namespace tyndall::volumetric_gi {
+namespace {
+
+/// Surfels are no smaller than this part of the content's radius, where the eye is right before a surface.
+constexpr double kSmallest = 1e-4;
+
+bool converges(const plugin::FrameInputs& inputs) {
+    return (inputs.view.data.flags & gpu::kViewConverge) != 0;
+}
+
+/// Chances of this frame: the same in all frames that are not averaged.
+uint64_t chanceOf(const plugin::FrameInputs& inputs) {
+    return fg::mixHash(inputs.view.data.seed, converges(inputs) ? inputs.view.data.frameIndex : 0);
+}
+
+/// Of the view, without the frame's offset.
+SurfelSize sizeOf(const plugin::FrameInputs& inputs, const SurfelsSettings& settings) {
+    const gpu::ViewData& view = inputs.view.data;
+    SurfelSize size;
+    size.eye = dvec3(view.cameraPosition);
+    const dmat4 clipFromView = dmat4(view.clipFromRender) * glm::inverse(dmat4(view.viewFromRender));
+    const double pixel = double(settings.size) * 2 / (clipFromView[1][1] * double(view.size.y));
+    const Bounds content = boundsOf(inputs.scene.contentMinimum, inputs.scene.contentMaximum);
+    size.least = content.empty() ? 0 : kSmallest * 0.5 * glm::length(content.extent());
+    if ((view.flags & gpu::kViewOrthographic) != 0)
+        size.least = std::max(size.least, pixel);
+    else
+        size.perDistance = pixel;
+    size.perMediumDistance = double(settings.far);
+    return size;
+}
+
+} // namespace
+
+const plugin::TechniqueInfo& SurfelsTechnique::info() const {
+    static constexpr plugin::TechniqueInfo kInfo{
+        .name = "surfels",
+        .title = "Surfels in a deep screen space",
+        .help = "Splats light of surfaces onto the media beside them, in detail near the eye ray.",
+        .claims = terms(Term::LSVE),
+        .sets = nullptr,
+        .setCount = 0,
+        .media = kAllMedia,
+        .separatesMedia = 1,
+        .automatic = 0,
+        .expected = {{4, 1, 1}, {4, 1, 1}, {4, 1, 1}, {4, 1, 1}}};
+    return kInfo;
+}
+
+plugin::SettingsTable SurfelsTechnique::settings() {
+    return table(surfelsSettings(), &settings_, surfelsPresets());
+}
+
+void SurfelsTechnique::updateTriangles(const plugin::FrameInputs& inputs) {
+    const uint64_t key = cacheKey(inputs.scene.geometry, inputs.origin[0], inputs.origin[1], inputs.origin[2]);
+    if (key == trianglesKey_) return;
+    trianglesKey_ = key;
+    corners_.clear();
+    triangles_.clear();
+    std::vector<size_t> starts;
+    for (uint32_t set = 0; set < inputs.surfaces->triangleSetCount(); ++set) {
+        const plugin::SurfaceTriangles from = inputs.surfaces->triangles(set);
+        const Mesh& mesh = inputs.whole->meshes[from.mesh];
+        starts.push_back(corners_.size());
+        for (const uint32_t index : mesh.indices)
+            corners_.push_back(dvec3(from.renderFromLocal * vec4(mesh.positions[index], 1)));
+    }
+    starts.push_back(corners_.size());
+    for (size_t set = 0; set + 1 < starts.size(); ++set)
+        triangles_.push_back({std::span(corners_).subspan(starts[set], starts[set + 1] - starts[set]),
+                              uint32_t(set)});
+}
+
+/// Empty where a medium has no end.
+Bounds SurfelsTechnique::mediaBounds(const plugin::FrameInputs&) const {
+    Bounds bounds;
+    for (const tracing::MediumSource& medium : scene_.media().media()) {
+        if (medium.endless()) return {};
+        bounds.include(medium.bounds());
+    }
+    return bounds;
+}
+
+void SurfelsTechnique::makePlan(const plugin::FrameInputs& inputs) {
+    updateTriangles(inputs);
+    SurfelSize size = sizeOf(inputs, settings_);
+    size.media = mediaBounds(inputs);
+    const uint64_t chance = chanceOf(inputs);
+    const uint64_t key = cacheKey(trianglesKey_, size.eye, size.perDistance, size.least, size.media,
+                                  size.perMediumDistance, settings_.most, chance);
+    if (key == planKey_) return;
+    plan_ = planSurfels(triangles_, size, uint32_t(settings_.most), chance);
+    planKey_ = key;
+}
+
+plugin::FrameOutputs SurfelsTechnique::addPasses(fg::FrameGraph& graph,
+                                                 const plugin::FrameInputs& inputs) {
+    plugin::FrameOutputs outputs;
+    if (inputs.media.count == 0 || !inputs.transmittance || inputs.lights.lightCount == 0) return outputs;
+    if (Result<void> ready = scene_.update(inputs, {}); !ready.ok()) {
+        if (said_ != ready.message()) host().log(("surfels: " + ready.message()).c_str());
+        said_ = ready.message();
+        return outputs;
+    }
+    makePlan(inputs);
+    if (plan_.surfels == 0) return outputs;
+    if (interleave_.empty()) interleave_ = interleaveTables(gpu::kSurfelMostLevels);
+
+    SplatRequest request;
+    const fg::BufferHandle surfels =
+        addSurfels(graph, inputs, plan_, Surfelizer(settings_.surfelizer), planKey_);
+    request.surfels = addSurfelLight(graph, inputs, surfels, plan_.surfels);
+    request.map = addSurfelIntervals(graph, inputs, 1 << settings_.march, intervalCount(settings_),
+                                     settings_.jitter);
+    request.interleave = addCachedUpload(graph, "gi.surfels.interleave", interleave_, 1);
+    request.rays = SurfelRays(settings_.rays);
+    if (request.rays != SurfelRays::None) request.traced = scene_.buffers(graph);
+    request.media = mediaBounds(inputs);
+    request.levels = SurfelPairs(settings_.pairs) == SurfelPairs::All ? 1 : uint32_t(settings_.levels);
+    request.threshold = double(settings_.threshold);
+    request.attenuation = settings_.attenuation;
+    request.visibility = settings_.visibility && request.rays != SurfelRays::None;
+    request.chance = chanceOf(inputs);
+    const fg::TextureHandle levels = addSurfelSplats(graph, inputs, request);
+    outputs.inMedia = addSurfelCollect(graph, inputs, request, levels,
+                                       settings_.blur && !converges(inputs));
+    return outputs;
+}
+
+std::unique_ptr<GiTechnique> makeSurfels(SharedParts& shared) {
+    return std::make_unique<SurfelsTechnique>(shared);
+}
+
+} // namespace tyndall::volumetric_gi

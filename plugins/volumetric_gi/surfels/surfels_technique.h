@@ -1,0 +1,38 @@
+#pragma once
+// Light that surfaces scatter into media: surfels, splatted onto intervals of eye rays in an interleaved framebuffer. docs/techniques/surfels.md says how it works.
+
+#include <string>
+#include <vector>
+
+#include "volumetric_gi/shared/gi_technique.h"
+#include "volumetric_gi/surfels/surfel_patches.h"
+#include "volumetric_gi/surfels/surfel_splats.h"
+#include "volumetric_gi/surfels/surfels_settings.h"
+
+namespace tyndall::volumetric_gi {
+
+class SurfelsTechnique final : public GiTechnique {
+public:
+    explicit SurfelsTechnique(SharedParts& shared) : GiTechnique(shared), scene_(shared.traced) {}
+    const plugin::TechniqueInfo& info() const override;
+    plugin::SettingsTable settings() override;
+    plugin::FrameOutputs addPasses(fg::FrameGraph& graph,
+                                   const plugin::FrameInputs& inputs) override;
+
+private:
+    void makePlan(const plugin::FrameInputs& inputs);
+    void updateTriangles(const plugin::FrameInputs& inputs);
+    [[nodiscard]] Bounds mediaBounds(const plugin::FrameInputs& inputs) const;
+
+    SurfelsSettings settings_{};
+    TracedScene& scene_;
+    std::vector<dvec3> corners_; // of all triangles, render space
+    std::vector<SurfelTriangles> triangles_;
+    uint64_t trianglesKey_ = 0;
+    SurfelPlan plan_;
+    uint64_t planKey_ = 0;
+    std::vector<uint32_t> interleave_;
+    std::string said_; // the last failure
+};
+
+} // namespace tyndall::volumetric_gi

@@ -1,0 +1,17 @@
+// Points of a patch as surfels.
+#include "gi/surfels/patch.glsl"
+
+layout(triangles, equal_spacing, point_mode) in;
+patch in uint patchOfPoint;
+layout(xfb_offset = 0) out Captured {
+    vec4 position;
+    vec4 normal;
+    vec4 albedo;
+};
+
+void main() {
+    Surfel surfel = surfelOf(patchOfPoint, gl_TessCoord);
+    position = surfel.position;
+    normal = surfel.normal;
+    albedo = surfel.albedo;
+}

@@ -1,0 +1,158 @@
+// Light of one surfel in the intervals of one eye ray that lie inside a shell around it, added to the ray's sub-buffer.
+//
+// RAYS 0: whatever lies between is ignored, but for the closed forms of media without a grid. 1: one interval, chosen in proportion to its light, is asked for all: the mean
+// over choices is the light of all, with what is between. 2: every interval is asked.
+#include "gi/surfels/splat.glsl"
+#include "common/phase_function.glsl"
+#include "gi/surfels/interval_map.glsl"
+#include "media/nearest_rays.glsl"
+#include "media/optical_depth.glsl"
+#if RAYS
+#include "gi/shared/visibility.glsl"
+#endif
+
+flat in uint surfelNumber;
+flat in uint subBuffer;
+flat in vec2 shell;
+
+uniform sampler2D ways;
+uniform sampler2DArray totals;
+uniform sampler2DArray intervals;
+layout(std140) uniform Params { MarchParams params; };
+
+layout(location = 0) out vec4 light; // w: 1 for each surfel that has come to the ray
+
+/// The first interval whose point is not before `code`.
+uint firstInterval(ivec2 ray, float code) {
+    uint low = 0u;
+    uint high = map.intervals;
+    while (low < high) {
+        uint middle = (low + high) / 2u;
+        float at = texelFetch(intervals, ivec3(ray, intervalLayer(middle, 0u)), 0).x * kCodes;
+        if (at < code) low = middle + 1u;
+        else high = middle;
+    }
+    return low;
+}
+
+/// Light over radiance that a surfel sends through a point: a disk whose tangent plane is bent so that the surfels of a plane together send 2π to every point, as
+/// near as it may be; on the axis π r²/(d² + r²), the disk's closed form for a facing receiver; from afar A cos/d².
+float kernel(float area, float height, float squared) {
+    float r2 = area * (1.0 / kPi);
+    float sum = squared + r2;
+    return area * sqrt(height * height + r2) / (sum * sqrt(sum));
+}
+
+/// As printed: πr² max(cos, 0)/max(d², δ).
+float printedKernel(float area, float height, float squared) {
+    return area * abs(height) * inversesqrt(max(squared, 1e-30)) / max(squared, splat.nearest);
+}
+
+struct Pair {
+    vec3 light;    // of the interval, before what is between is asked
+    vec3 position; // of the interval's point
+};
+
+/// Of the interval's light of all phase functions.
+vec3 scatteredToEye(ivec2 ray, uint interval, float cosine) {
+    vec3 sum = vec3(0.0);
+#if PHASE_GROUPS == 1
+    vec3 weight = texelFetch(totals, ivec3(ray, 0), 0).rgb * texelFetch(intervals, ivec3(ray, int(interval)), 0).yzw;
+    sum = weight * phaseFunction(uint(mediaHeader.phases[0].x), mediaHeader.phases[0].y, cosine);
+#else
+    for (uint g = 0u; g < map.groups; ++g) {
+        vec3 weight = texelFetch(totals, ivec3(ray, int(g)), 0).rgb * texelFetch(intervals, ivec3(ray, intervalLayer(interval, g)), 0).yzw;
+        sum += weight * phaseFunction(uint(mediaHeader.phases[g].x), mediaHeader.phases[g].y, cosine);
+    }
+#endif
+    return sum;
+}
+
+Pair pairLight(LitSurfel s, Ray ray, ivec2 number, RayWay way, uint interval) {
+    float code = texelFetch(intervals, ivec3(number, intervalLayer(interval, 0u)), 0).x * kCodes;
+    Pair pair;
+    pair.position = ray.origin + ray.direction * distanceOfCode(way, code);
+    vec3 off = pair.position - s.position.xyz;
+    float squared = dot(off, off);
+    float height = dot(off, s.normal.xyz);
+    vec3 radiance = height > 0.0 ? s.front.rgb : s.back.rgb;
+    float distance = sqrt(squared);
+    float cosine = distance > 0.0 ? -dot(off, ray.direction) / distance : 0.0;
+    float form = splat.mode == kSurfelEncodingPaper ? printedKernel(s.position.w, height, squared) : kernel(s.position.w, height, squared);
+    pair.light = radiance * scatteredToEye(number, interval, cosine) * form;
+    if (splat.attenuation != 0u && maximumOf(pair.light) > 0.0) {
+        vec3 way = distance > 0.0 ? -off / distance : vec3(1.0, 0.0, 0.0);
+        pair.light *= exp(-analyticOpticalDepth(pair.position, way, 0.0, distance));
+    }
+    return pair;
+}
+
+#if RAYS
+/// What of a pair's light gets through surfaces and grids.
+vec3 between(Pair pair, LitSurfel s) {
+    if (splat.visibility != 0u && triangleBetween(pair.position, s.position.xyz)) return vec3(0.0);
+    if (splat.attenuation == 0u) return vec3(1.0);
+    vec3 way = s.position.xyz - pair.position;
+    float distance = length(way);
+    return exp(-gridOpticalDepth(pair.position, way / max(distance, 1e-30), 0.0, distance));
+}
+#endif
+
+void main() {
+    light = vec4(0.0);
+    ivec2 cell = ivec2(gl_FragCoord.xy) - subBufferCorner(splat.level, subBuffer, splat.size);
+    ivec2 number = rayOf(splat.level, subBuffer, cell);
+    if (any(greaterThanEqual(number, splat.size))) return;
+    RayWay way = rayWay(texelFetch(ways, number, 0));
+    if (!(way.length > 0.0)) return;
+    LitSurfel s = lit[surfelNumber];
+    Ray ray = cameraRay(vec2(marchedPixel(number, params, ivec2(view.size.xy))) + 0.5);
+    vec3 toSurfel = s.position.xyz - ray.origin;
+    float abreast = dot(toSurfel, ray.direction);
+    vec3 aside = toSurfel - abreast * ray.direction;
+    float off = dot(aside, aside);
+    float outer = shell.y * shell.y - off;
+    if (!(outer > 0.0)) return;
+    outer = sqrt(outer);
+    uint first = firstInterval(number, codeOfDistance(way, abreast - outer));
+    uint end = firstInterval(number, codeOfDistance(way, abreast + outer));
+    uint hole = end;
+    uint holeEnd = end;
+    float inner = shell.x * shell.x - off;
+    if (inner > 0.0) {
+        inner = sqrt(inner);
+        hole = firstInterval(number, codeOfDistance(way, abreast - inner));
+        holeEnd = firstInterval(number, codeOfDistance(way, abreast + inner));
+    }
+    vec3 sum = vec3(0.0);
+#if RAYS == 1
+    float u = unitFloat(hashUint(surfelNumber * 0x9e3779b9u + hashUint(uint(number.x) + hashUint(uint(number.y) + splat.seed))));
+    float total = 0.0;
+    float chosenLight = 0.0;
+    Pair chosen = Pair(vec3(0.0), vec3(0.0));
+#endif
+    for (uint i = first; i < end; ++i) {
+        if (i == hole) i = holeEnd;
+        if (i >= end) break;
+        Pair pair = pairLight(s, ray, number, way, i);
+#if RAYS == 1
+        float strength = maximumOf(pair.light);
+        total += strength;
+        float part = strength / max(total, 1e-37);
+        bool take = strength > 0.0 && u < part;
+        u = take ? u / part : (u - part) / max(1.0 - part, 1e-7);
+        if (take) {
+            chosen = pair;
+            chosenLight = strength;
+        }
+#elif RAYS == 2
+        if (maximumOf(pair.light) > 0.0) sum += pair.light * between(pair, s);
+#else
+        sum += pair.light;
+#endif
+    }
+#if RAYS == 1
+    if (chosenLight > 0.0) sum = chosen.light * (total / chosenLight) * between(chosen, s);
+#endif
+    light = vec4(sum * float(1u << (2u * splat.level)), 1.0);
+}

@@ -1,0 +1,3 @@
+// From rays to pixels.
+#define MARCH_FILLS
+#include "gi/shared/upsample.glsl"
