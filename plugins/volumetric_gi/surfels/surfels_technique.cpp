@@ -16,6 +16,9 @@ namespace {
 /// Surfels are no smaller than this part of the content's radius, where the eye is right before a surface.
 constexpr double kSmallest = 1e-4;
 
+/// A surfel is no larger than this part of the picture's height: a small picture of a scene needs no fewer of them.
+constexpr double kLargest = 1.0 / 30;
+
 bool converges(const plugin::FrameInputs& inputs) {
     return (inputs.view.data.flags & gpu::kViewConverge) != 0;
 }
@@ -31,7 +34,9 @@ SurfelSize sizeOf(const plugin::FrameInputs& inputs, const SurfelsSettings& sett
     SurfelSize size;
     size.eye = dvec3(view.cameraPosition);
     const dmat4 clipFromView = dmat4(view.clipFromRender) * glm::inverse(dmat4(view.viewFromRender));
-    const double pixel = double(settings.size) * 2 / (clipFromView[1][1] * double(view.size.y));
+    const double height = double(view.size.y),
+                 pixels = std::min(double(settings.size), kLargest * height),
+                 pixel = pixels * 2 / (clipFromView[1][1] * height);
     const Bounds content = boundsOf(inputs.scene.contentMinimum, inputs.scene.contentMaximum);
     size.least = content.empty() ? 0 : kSmallest * 0.5 * glm::length(content.extent());
     if ((view.flags & gpu::kViewOrthographic) != 0)
