@@ -25,7 +25,8 @@ struct SurfelPatch {
 struct Surfel {
     vec4 position; // render space; w: m²
     vec4 normal;   // unit, on either side: both sides reflect; w: padding
-    vec4 albedo;   // part of light from all around that is reflected; w: padding
+    vec4 base;     // base colour; w: metallic
+    vec4 surface;  // x: weight of the dielectric's coat (specular), y: 1 where the surface reflects, z: roughness; w: padding
 };
 
 /// Buffer `LitSurfels`.
@@ -111,7 +112,7 @@ struct SurfelCollectParams {
     uint hasCoarser; // 1: there is a sum of coarser levels
     uint hasOwn;     // 1: the level's own light is added
     uint last;       // 1: the result is light, not light over scattering
-    uint padding0;
+    uint plain;      // 1: all rays count alike
 };
 
 TYNDALL_SHARED_END

@@ -3,7 +3,7 @@
 namespace tyndall::volumetric_gi {
 
 SurfelIntervals addSurfelIntervals(fg::FrameGraph& graph, const plugin::FrameInputs& inputs,
-                                   int factor, uint32_t count, bool jitter) {
+                                   const IntervalRequest& request) {
     struct Data {
         ViewResources view;
         MediaResources media;
@@ -18,13 +18,17 @@ SurfelIntervals addSurfelIntervals(fg::FrameGraph& graph, const plugin::FrameInp
             data.depth = builder.read(inputs.gbuffer.depth);
             SurfelIntervals& map = data.map;
             map.march = inputs.march;
+            const int factor = request.factor;
             map.march.factor = uint32_t(factor);
             const int width = (inputs.view.width + factor - 1) / factor,
                       height = (inputs.view.height + factor - 1) / factor;
-            const auto groups = int(inputs.media.phaseGroups);
-            map.params.intervals = count;
+            const int groups = request.paper ? 1 : int(inputs.media.phaseGroups);
+            map.params.intervals = request.count;
             map.params.groups = uint32_t(groups);
-            map.params.jitter = jitter;
+            map.params.jitter = request.jitter;
+            map.params.mode = request.paper ? gpu::kSurfelEncodingPaper : gpu::kSurfelEncodingCorrected;
+            map.params.step = float(request.step);
+            map.params.densest = float(request.densest);
             map.params.size = ivec2(width, height);
             map.ways = builder.create("gi.surfels.ways",
                                       fg::texture2D(fg::Format::RGBA32F, width, height));
@@ -32,12 +36,15 @@ SurfelIntervals addSurfelIntervals(fg::FrameGraph& graph, const plugin::FrameInp
                 "gi.surfels.totals", fg::texture2DArray(fg::Format::RGBA32F, width, height, groups));
             map.intervals = builder.create(
                 "gi.surfels.intervals",
-                fg::texture2DArray(fg::Format::RGBA16, width, height, int(count) * groups));
+                fg::texture2DArray(fg::Format::RGBA16, width, height, int(request.count) * groups));
         },
         [](const Data& data, fg::PassContext& context) {
-            auto command = context.compute("gi/surfels/intervals.comp",
-                                           {{"PHASE_GROUPS", int32_t(data.media.phaseGroups)},
-                                            {"MEDIA_KINDS", mediaKinds(data.media, false)}});
+            auto command =
+                data.map.params.mode == gpu::kSurfelEncodingPaper
+                    ? context.compute("gi/surfels/intervals_paper.comp")
+                    : context.compute("gi/surfels/intervals.comp",
+                                      {{"PHASE_GROUPS", int32_t(data.media.phaseGroups)},
+                                       {"MEDIA_KINDS", mediaKinds(data.media, false)}});
             bindMedia(bindView(command, data.view), data.media);
             bindIntervals(command, data.map).bind("depth", data.depth).dispatchOver(data.map.ways);
         });

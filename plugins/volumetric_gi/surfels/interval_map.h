@@ -16,10 +16,20 @@ struct SurfelIntervals {
     gpu::MarchParams march{}; // which pixel a ray is of
 };
 
-/// Adds the pass `gi.surfels.intervals`. `factor`: pixels along an edge of the square that a ray stands for; `count`: intervals of a ray.
+struct IntervalRequest {
+    int factor = 1;      // pixels along an edge of the square that a ray stands for
+    uint32_t count = 16; // intervals of a ray
+    bool jitter = true;
+    // As printed:
+    bool paper = false;
+    double step = 0;    // of the march, metres
+    double densest = 0; // largest scattering coefficient of all media, per metre
+};
+
+/// Adds the pass `gi.surfels.intervals`.
 [[nodiscard]] SurfelIntervals addSurfelIntervals(fg::FrameGraph& graph,
-                                                 const plugin::FrameInputs& inputs, int factor,
-                                                 uint32_t count, bool jitter);
+                                                 const plugin::FrameInputs& inputs,
+                                                 const IntervalRequest& request);
 
 /// Declares that a pass reads the map; the result is what bindIntervals() takes.
 [[nodiscard]] SurfelIntervals readIntervals(fg::Builder& builder, const SurfelIntervals& map);

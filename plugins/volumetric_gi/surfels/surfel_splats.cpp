@@ -20,6 +20,7 @@ struct SplatData {
     fg::TextureHandle levels;
     gpu::SurfelSplatParams params;
     uint64_t chance;
+    uint32_t phaseGroups;
     int32_t rays, kinds;
 };
 
@@ -44,6 +45,7 @@ gpu::SurfelSplatParams splatParams(const plugin::FrameInputs& inputs, const Spla
     params.mode = request.paper ? gpu::kSurfelEncodingPaper : gpu::kSurfelEncodingCorrected;
     params.attenuation = request.attenuation;
     params.visibility = request.visibility && request.traced.triangles;
+    params.nearest = float(request.nearest);
     params.seed = uint32_t(request.chance);
     params.tail = !request.paper;
     params.factor = request.map.march.factor;
@@ -56,9 +58,10 @@ void drawLevel(const SplatData& data, uint32_t level, fg::PassContext& context) 
     params.shift = uint32_t(fg::mixHash(data.chance, level));
     auto command = context.raster(
         {.vertex = "gi/surfels/splat.vert", .fragment = "gi/surfels/splat.frag"},
-        {{"PHASE_GROUPS", int32_t(data.media.phaseGroups)},
+        {{"PHASE_GROUPS", int32_t(data.phaseGroups)},
          {"MEDIA_KINDS", data.kinds},
-         {"RAYS", data.rays}});
+         {"RAYS", data.rays},
+         {"PAPER", data.params.mode == gpu::kSurfelEncodingPaper}});
     fg::RasterState state;
     state.blend = fg::BlendMode::Add;
     bindMedia(bindView(command, data.view), data.media);
@@ -166,7 +169,9 @@ fg::TextureHandle addSurfelSplats(fg::FrameGraph& graph, const plugin::FrameInpu
                 data.params = splatParams(inputs, request);
                 data.rays = int32_t(request.rays);
                 const bool grids = (inputs.media.kinds & gpu::kMediaGrids) != 0;
-                data.kinds = int32_t(gpu::kMediaShapes | (grids ? gpu::kMediaGrids : 0u));
+                data.kinds = int32_t(gpu::kMediaShapes |
+                                     (grids && !request.paper ? gpu::kMediaGrids : 0u));
+                data.phaseGroups = request.paper ? 1 : inputs.media.phaseGroups;
                 // Nothing to ask: closed forms are had without rays.
                 if (data.params.visibility == 0 && (!grids || !request.attenuation)) data.rays = 0;
                 if (data.rays != 0) data.traced = readTraced(builder, request.traced);
@@ -188,12 +193,13 @@ fg::TextureHandle addSurfelSplats(fg::FrameGraph& graph, const plugin::FrameInpu
 }
 
 fg::TextureHandle addSurfelCollect(fg::FrameGraph& graph, const plugin::FrameInputs& inputs,
-                                   const SplatRequest& request, fg::TextureHandle levels,
-                                   bool blur) {
+                                   const SplatRequest& request, fg::TextureHandle levels) {
+    const bool blur = request.blur;
     fg::TextureHandle sum;
     for (uint32_t level = request.levels; level-- > 0;) {
         gpu::SurfelCollectParams params{};
         params.size = request.map.params.size;
+        params.plain = request.paper;
         params.level = int32_t(level);
         params.spacing = blur ? 1 << level : 0;
         params.hasCoarser = sum ? 1 : 0;
@@ -205,6 +211,7 @@ fg::TextureHandle addSurfelCollect(fg::FrameGraph& graph, const plugin::FrameInp
         // The finest level: points of intervals differ from ray to ray.
         gpu::SurfelCollectParams params{};
         params.size = request.map.params.size;
+        params.plain = request.paper;
         params.spacing = 1;
         params.hasCoarser = params.last = 1;
         sum = addCollect(graph, inputs, request, levels, sum, params);

@@ -16,7 +16,10 @@ struct SplatRequest {
     uint32_t levels = 1;
     double threshold = 0;
     SurfelRays rays = SurfelRays::None;
-    bool attenuation = false, visibility = false, paper = false;
+    bool attenuation = false, visibility = false;
+    bool paper = false; // as printed
+    double nearest = 0; // δ of the printed kernel, m²
+    bool blur = false;
     uint64_t chance = 0; // of this frame
 };
 
@@ -29,6 +32,6 @@ struct SplatRequest {
 [[nodiscard]] fg::TextureHandle addSurfelCollect(fg::FrameGraph& graph,
                                                  const plugin::FrameInputs& inputs,
                                                  const SplatRequest& request,
-                                                 fg::TextureHandle levels, bool blur);
+                                                 fg::TextureHandle levels);
 
 } // namespace tyndall::volumetric_gi

@@ -19,6 +19,9 @@ constexpr double kSmallest = 1e-4;
 /// A surfel is no larger than this part of the picture's height: a small picture of a scene needs no fewer of them.
 constexpr double kLargest = 1.0 / 30;
 
+/// Of the printed march: "the depth of the wall in our test scene corresponded to roughly 200 steps".
+constexpr double kStepsThroughScene = 200;
+
 bool converges(const plugin::FrameInputs& inputs) {
     return (inputs.view.data.flags & gpu::kViewConverge) != 0;
 }
@@ -45,6 +48,14 @@ SurfelSize sizeOf(const plugin::FrameInputs& inputs, const SurfelsSettings& sett
         size.perDistance = pixel;
     size.perMediumDistance = double(settings.far);
     return size;
+}
+
+/// The paper has neither attenuation nor visibility, and surfels of one size on the screen.
+SurfelsSettings asInThePaper(SurfelsSettings settings) {
+    settings.far = 0;
+    settings.rays = int32_t(SurfelRays::None);
+    settings.attenuation = settings.visibility = false;
+    return settings;
 }
 
 } // namespace
@@ -89,7 +100,7 @@ void SurfelsTechnique::updateTriangles(const plugin::FrameInputs& inputs) {
 }
 
 /// Empty where a medium has no end.
-Bounds SurfelsTechnique::mediaBounds(const plugin::FrameInputs&) const {
+Bounds SurfelsTechnique::mediaBounds() const {
     Bounds bounds;
     for (const tracing::MediumSource& medium : scene_.media().media()) {
         if (medium.endless()) return {};
@@ -100,47 +111,64 @@ Bounds SurfelsTechnique::mediaBounds(const plugin::FrameInputs&) const {
 
 void SurfelsTechnique::makePlan(const plugin::FrameInputs& inputs) {
     updateTriangles(inputs);
-    SurfelSize size = sizeOf(inputs, settings_);
-    size.media = mediaBounds(inputs);
+    SurfelSize size = sizeOf(inputs, used_);
+    size.media = mediaBounds();
     const uint64_t chance = chanceOf(inputs);
     const uint64_t key = cacheKey(trianglesKey_, size.eye, size.perDistance, size.least, size.media,
-                                  size.perMediumDistance, settings_.most, chance);
+                                  size.perMediumDistance, used_.most, chance);
     if (key == planKey_) return;
-    plan_ = planSurfels(triangles_, size, uint32_t(settings_.most), chance);
+    plan_ = planSurfels(triangles_, size, uint32_t(used_.most), chance);
     planKey_ = key;
+}
+
+IntervalRequest SurfelsTechnique::intervals(const plugin::FrameInputs& inputs) const {
+    IntervalRequest request;
+    request.factor = 1 << used_.march;
+    request.count = intervalCount(used_);
+    request.jitter = used_.jitter;
+    request.paper = asPrinted();
+    const Bounds content = boundsOf(inputs.scene.contentMinimum, inputs.scene.contentMaximum);
+    request.step = content.empty() ? 1 : glm::length(content.extent()) / kStepsThroughScene;
+    for (const tracing::MediumSource& medium : scene_.media().media())
+        request.densest += medium.densestBound() * double(maximumOf(vec3(medium.scattering)));
+    return request;
 }
 
 plugin::FrameOutputs SurfelsTechnique::addPasses(fg::FrameGraph& graph,
                                                  const plugin::FrameInputs& inputs) {
     plugin::FrameOutputs outputs;
-    if (inputs.media.count == 0 || !inputs.transmittance || inputs.lights.lightCount == 0) return outputs;
+    if (inputs.media.count == 0 || !inputs.transmittance || inputs.lights.lightCount == 0)
+        return outputs;
     if (Result<void> ready = scene_.update(inputs, {}); !ready.ok()) {
         if (said_ != ready.message()) host().log(("surfels: " + ready.message()).c_str());
         said_ = ready.message();
         return outputs;
     }
+    used_ = asPrinted() ? asInThePaper(settings_) : settings_;
     makePlan(inputs);
     if (plan_.surfels == 0) return outputs;
     if (interleave_.empty()) interleave_ = interleaveTables(gpu::kSurfelMostLevels);
 
     SplatRequest request;
     const fg::BufferHandle surfels =
-        addSurfels(graph, inputs, plan_, Surfelizer(settings_.surfelizer), planKey_);
+        addSurfels(graph, inputs, plan_, Surfelizer(used_.surfelizer), planKey_);
     request.surfels = addSurfelLight(graph, inputs, surfels, plan_.surfels);
-    request.map = addSurfelIntervals(graph, inputs, 1 << settings_.march, intervalCount(settings_),
-                                     settings_.jitter);
+    const IntervalRequest intervals = this->intervals(inputs);
+    request.map = addSurfelIntervals(graph, inputs, intervals);
     request.interleave = addCachedUpload(graph, "gi.surfels.interleave", interleave_, 1);
-    request.rays = SurfelRays(settings_.rays);
+    request.rays = SurfelRays(used_.rays);
     if (request.rays != SurfelRays::None) request.traced = scene_.buffers(graph);
-    request.media = mediaBounds(inputs);
-    request.levels = SurfelPairs(settings_.pairs) == SurfelPairs::All ? 1 : uint32_t(settings_.levels);
-    request.threshold = double(settings_.threshold);
-    request.attenuation = settings_.attenuation;
-    request.visibility = settings_.visibility && request.rays != SurfelRays::None;
+    request.media = mediaBounds();
+    request.levels = SurfelPairs(used_.pairs) == SurfelPairs::All ? 1 : uint32_t(used_.levels);
+    request.threshold = double(used_.threshold);
+    request.attenuation = used_.attenuation;
+    request.visibility = used_.visibility && request.rays != SurfelRays::None;
+    request.paper = asPrinted();
+    request.nearest = intervals.step * intervals.step;
+    request.blur = used_.blur && !converges(inputs);
     request.chance = chanceOf(inputs);
     const fg::TextureHandle levels = addSurfelSplats(graph, inputs, request);
-    outputs.inMedia = addSurfelCollect(graph, inputs, request, levels,
-                                       settings_.blur && !converges(inputs));
+    outputs.inMedia = addSurfelCollect(graph, inputs, request, levels);
     return outputs;
 }
 

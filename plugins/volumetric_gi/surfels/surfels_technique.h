@@ -22,9 +22,11 @@ public:
 private:
     void makePlan(const plugin::FrameInputs& inputs);
     void updateTriangles(const plugin::FrameInputs& inputs);
-    [[nodiscard]] Bounds mediaBounds(const plugin::FrameInputs& inputs) const;
+    [[nodiscard]] Bounds mediaBounds() const;
+    [[nodiscard]] IntervalRequest intervals(const plugin::FrameInputs& inputs) const;
 
     SurfelsSettings settings_{};
+    SurfelsSettings used_{}; // in this frame
     TracedScene& scene_;
     std::vector<dvec3> corners_; // of all triangles, render space
     std::vector<SurfelTriangles> triangles_;

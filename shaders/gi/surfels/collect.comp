@@ -1,5 +1,5 @@
 // From sub-buffers back to rays, from the coarsest level to the finest: a level's light is added to what is coarser, after that has been filtered over as many
-// rays as its level has sub-buffers. Light is over what the ray scatters, so that outlines of media stay; rays that end elsewhere count less.
+// rays as its level has sub-buffers. Light is over what the ray scatters, so that outlines of media stay; rays that end elsewhere count less. The paper's filter is a plain one.
 #include "common/view.glsl"
 #include "gi/surfels/interleave.glsl"
 #include "gi/surfels/interval_map.glsl"
@@ -17,6 +17,7 @@ uniform sampler2D coarser;
 layout(rgba32f) writeonly uniform image2D collected;
 
 float scatteredBy(ivec2 ray) {
+    if (collect.plain != 0u) return 1.0;
     float sum = 0.0;
     for (uint g = 0u; g < map.groups; ++g) sum += meanOf(texelFetch(totals, ivec3(ray, int(g)), 0).rgb);
     return sum;
@@ -38,8 +39,8 @@ vec3 filtered(ivec2 ray, RayWay way) {
         ivec2 at = ray + step * collect.spacing;
         if (any(lessThan(at, ivec2(0))) || any(greaterThanEqual(at, collect.size))) continue;
         RayWay other = rayWay(texelFetch(ways, at, 0));
-        if (!(other.length > 0.0)) continue;
-        float like = likeness(distance, vec3(1.0 - way.opacity), distanceOf(at), vec3(1.0 - other.opacity), params);
+        if (!(other.length > 0.0) && collect.plain == 0u) continue;
+        float like = collect.plain != 0u ? 1.0 : likeness(distance, vec3(1.0 - way.opacity), distanceOf(at), vec3(1.0 - other.opacity), params);
         float weight = like * like * float((2 - abs(step.x)) * (2 - abs(step.y)));
         sum += weight * texelFetch(coarser, at, 0).rgb;
         weights += weight;
@@ -53,7 +54,7 @@ void main() {
     RayWay way = rayWay(texelFetch(ways, ray, 0));
     float scattered = scatteredBy(ray);
     vec3 light = vec3(0.0);
-    if (way.length > 0.0 && scattered > 0.0) {
+    if ((way.length > 0.0 && scattered > 0.0) || collect.plain != 0u) {
         if (collect.hasCoarser != 0u) light = filtered(ray, way);
         if (collect.hasOwn != 0u) {
             uint level = uint(collect.level);

@@ -13,21 +13,29 @@ const float kCodeRatio = 1e4;
 const float kCodeBits = 13.28785616; // log2(1 + kCodeRatio)
 const float kCodes = 65535.0;
 
+// PAPER: codes are steps of a march, whose length is in the place of the way's; a ray also has its largest coefficient.
+#ifndef PAPER
+#define PAPER 0
+#endif
+
 struct RayWay {
-    float start;  // metres
-    float length; // metres; 0: no medium that scatters
-    float opacity; // mean of the channels, of all of the way
+    float start;   // metres
+    float length;  // metres; 0: no medium that scatters
+    float opacity; // mean of the channels, of all of the way; PAPER: transmittance
+    float largest; // PAPER: scattering coefficient, per metre
 };
 
-RayWay rayWay(vec4 texel) { return RayWay(texel.x, texel.y, texel.z); }
+RayWay rayWay(vec4 texel) { return RayWay(texel.x, texel.y, texel.z, texel.w); }
 
 float distanceOfCode(RayWay way, float code) {
+    if (PAPER != 0) return way.start + way.length * code;
     return way.start + way.length * ((exp2(code * (kCodeBits / kCodes)) - 1.0) / kCodeRatio);
 }
 
 /// Continuous; 0 before the start and 65536 behind the end.
 float codeOfDistance(RayWay way, float distance) {
     float along = (distance - way.start) / way.length;
+    if (PAPER != 0) return along;
     if (!(along > 0.0)) return 0.0;
     return along > 1.0 ? kCodes + 1.0 : log2(1.0 + kCodeRatio * along) * (kCodes / kCodeBits);
 }

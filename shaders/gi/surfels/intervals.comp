@@ -78,7 +78,7 @@ void main() {
     for (int g = 0; g < PHASE_GROUPS; ++g) total.of[g] = vec3(0.0);
     March march;
     Segment s;
-    RayWay way = RayWay(0.0, 0.0, 0.0);
+    RayWay way = RayWay(0.0, 0.0, 0.0, 0.0);
     bool any = beginMarch(ray, distance, march);
     March start = march;
     float end = march.next;
@@ -89,7 +89,7 @@ void main() {
     }
     float most = 0.0;
     for (int g = 0; g < PHASE_GROUPS; ++g) most = max(most, maximumOf(total.of[g]));
-    if (any && most > 0.0) way = RayWay(start.next, end - start.next, opacityBehind(march.before));
+    if (any && most > 0.0) way = RayWay(start.next, end - start.next, opacityBehind(march.before), 0.0);
     imageStore(ways, number, vec4(way.start, way.length, way.opacity, 0.0));
     for (uint g = 0u; g < map.groups; ++g) imageStore(totals, ivec3(number, int(g)), vec4(total.of[g], 0.0));
     if (!(way.length > 0.0)) return;

@@ -19,7 +19,7 @@ layout(std430) writeonly buffer LitSurfels { LitSurfel lit[]; };
 
 const float kSurfelPi = 3.14159265358979;
 
-/// Irradiance of both sides, lux.
+/// Light that both sides reflect, lux.
 struct SidesLight {
     vec3 front;
     vec3 back;
@@ -30,7 +30,25 @@ float random(uint surfel, uint use) {
     return unitFloat(hashUint(surfel + hashUint(use + hashUint(frame + view.seed * 0x9e3779b9u))));
 }
 
-void addLight(uint light, uint surfel, vec3 position, vec3 normal, inout SidesLight sum) {
+const float kDiffuseLoss = 0.045; // of a dielectric: Schlick's reflectance at half the angle between two directions, of which one is Lambert's
+
+/// The part of light from this angle that microfacets reflect to all sides, as x · F0 + y (Karis 2014, "Physically Based Shading on Mobile").
+vec2 specularAlbedo(float cosine, float roughness) {
+    vec4 r = roughness * vec4(-1.0, -0.0275, -0.572, 0.022) + vec4(1.0, 0.0425, 1.04, -0.04);
+    float a = min(r.x * r.x, exp2(-9.28 * cosine)) * r.x + r.y;
+    return vec2(-1.04, 1.04) * a + r.zw;
+}
+
+/// The part of light from this angle that is reflected to all sides. Where it goes is left to Lambert.
+vec3 reflected(Surfel s, float cosine) {
+    vec2 albedo = specularAlbedo(cosine, s.surface.z);
+    vec3 dielectric = s.base.rgb * (1.0 - s.surface.x * kDiffuseLoss) + s.surface.x * (kDielectricF0 * albedo.x + albedo.y);
+    return mix(dielectric, s.base.rgb * albedo.x + albedo.y, s.base.w);
+}
+
+void addLight(uint light, uint surfel, Surfel s, inout SidesLight sum) {
+    vec3 position = s.position.xyz;
+    vec3 normal = s.normal.xyz;
     vec2 u = vec2(random(surfel, 2u * light + 2u), random(surfel, 2u * light + 3u));
     LightSample arriving = sampleLight(light, position, u);
     vec3 front = arriving.illuminance * max(dot(normal, arriving.direction), 0.0);
@@ -44,7 +62,7 @@ void addLight(uint light, uint surfel, vec3 position, vec3 normal, inout SidesLi
     if (!(max(max(front.r, front.g), front.b) + max(max(back.r, back.g), back.b) > 0.0)) return;
     float visible = shadowVisibility(light, position, normal, u);
     if (!(visible > 0.0)) return;
-    vec3 through = vec3(visible);
+    vec3 through = visible * reflected(s, abs(dot(normal, arriving.direction)));
 #if MEDIA
     through *= exp(-opticalDepthToLight(light, position, arriving.direction, arriving.distance));
 #endif
@@ -64,22 +82,20 @@ vec3 nearGlowOn(vec3 position, vec3 normal, vec3 u) {
 void main() {
     uint number = lighting.first + gl_GlobalInvocationID.x;
     if (number >= lighting.surfelCount) return;
-    vec3 position = surfels[number].position.xyz;
-    vec3 normal = surfels[number].normal.xyz;
-    vec3 albedo = surfels[number].albedo.rgb;
+    Surfel s = surfels[number];
     SidesLight sum = SidesLight(vec3(0.0), vec3(0.0));
-    if (max(max(albedo.r, albedo.g), albedo.b) > 0.0 && surfels[number].position.w > 0.0) {
-        for (uint light = 0u; light < lighting.lightCount; ++light) addLight(light, number, position, normal, sum);
+    if (s.surface.y * s.position.w > 0.0) {
+        for (uint light = 0u; light < lighting.lightCount; ++light) addLight(light, number, s, sum);
 #if MEDIA
         if (mediaHeader.nearGlow > 0.0) {
             vec3 u = vec3(random(number, 0u), random(number, 1u), random(number, 0xffffu));
-            sum.front += nearGlowOn(position, normal, u);
-            sum.back += nearGlowOn(position, -normal, u);
+            sum.front += reflected(s, 2.0 / 3.0) * nearGlowOn(s.position.xyz, s.normal.xyz, u);
+            sum.back += reflected(s, 2.0 / 3.0) * nearGlowOn(s.position.xyz, -s.normal.xyz, u);
         }
 #endif
     }
-    vec3 front = sum.front * albedo * (1.0 / kSurfelPi);
-    vec3 back = sum.back * albedo * (1.0 / kSurfelPi);
+    vec3 front = sum.front * (1.0 / kSurfelPi);
+    vec3 back = sum.back * (1.0 / kSurfelPi);
     float brightest = max(max(max(front.r, front.g), front.b), max(max(back.r, back.g), back.b));
-    lit[number] = LitSurfel(surfels[number].position, vec4(normal, brightest), vec4(front, 0.0), vec4(back, 0.0));
+    lit[number] = LitSurfel(s.position, vec4(s.normal.xyz, brightest), vec4(front, 0.0), vec4(back, 0.0));
 }

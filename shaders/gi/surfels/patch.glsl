@@ -19,8 +19,6 @@ layout(std430) readonly buffer SurfelPatches { SurfelPatch patches[]; };
 uniform sampler2D baseColorTexture;
 uniform sampler2D metallicRoughnessTexture;
 
-const float kSurfelCoat = 0.0857; // of a dielectric of F0 0.04: Schlick's reflectance, averaged over the half sphere: F0 + (1 − F0)/21
-
 /// Barycentric coordinates in the patch, from those of the tessellator.
 vec3 surfelPlace(vec3 tessellated, uint level) {
     float n = float(level);
@@ -89,14 +87,12 @@ Surfel surfelOf(uint number, vec3 tessellated) {
     vec4 base = material.baseColor;
     if (set.colorFloats != 0u) base *= weights.x * colorOf(corners.x) + weights.y * colorOf(corners.y) + weights.z * colorOf(corners.z);
     if (material.baseColorTexture.offset.w != 0.0) base *= textureOver(baseColorTexture, material.baseColorTexture, corners, weights, share);
-    float metallic = material.metallic;
+    vec2 metalRough = vec2(material.metallic, material.roughness);
     if (material.metallicRoughnessTexture.offset.w != 0.0)
-        metallic *= textureOver(metallicRoughnessTexture, material.metallicRoughnessTexture, corners, weights, share).b;
-    float coat = kSurfelCoat * material.specular;
-    vec3 metal = base.rgb + (1.0 - base.rgb) / 21.0;
-    vec3 albedo = mix((1.0 - coat) * base.rgb + coat, metal, metallic);
+        metalRough *= textureOver(metallicRoughnessTexture, material.metallicRoughnessTexture, corners, weights, share).bg;
     bool unlit = (material.flags & kMaterialUnlit) != 0u || (objects[set.object].flags & kObjectHasNormals) == 0u;
-    surfel.albedo = vec4(unlit ? vec3(0.0) : clamp(albedo, 0.0, 1.0), 0.0);
+    surfel.base = vec4(clamp(base.rgb, 0.0, 1.0), metalRough.x);
+    surfel.surface = vec4(material.specular, unlit ? 0.0 : 1.0, metalRough.y, 0.0);
     // Holes have no area; over many surfels the rest is the surface's.
     if ((material.flags & kMaterialMask) != 0u && base.a < material.emissive.w) surfel.position.w = 0.0;
     return surfel;

@@ -6,12 +6,14 @@ patch in uint patchOfPoint;
 layout(xfb_offset = 0) out Captured {
     vec4 position;
     vec4 normal;
-    vec4 albedo;
+    vec4 base;
+    vec4 surface;
 };
 
 void main() {
     Surfel surfel = surfelOf(patchOfPoint, gl_TessCoord);
     position = surfel.position;
     normal = surfel.normal;
-    albedo = surfel.albedo;
+    base = surfel.base;
+    surface = surfel.surface;
 }

@@ -1,7 +1,7 @@
 // Light of one surfel in the intervals of one eye ray that lie inside a shell around it, added to the ray's sub-buffer.
 //
 // RAYS 0: whatever lies between is ignored, but for the closed forms of media without a grid. 1: one interval, chosen in proportion to its light, is asked for all: the mean
-// over choices is the light of all, with what is between. 2: every interval is asked.
+// over choices is the light of all, with what is between. 2: every interval is asked. PAPER: kernel and weights as printed (section 4.2).
 #include "gi/surfels/splat.glsl"
 #include "common/phase_function.glsl"
 #include "gi/surfels/interval_map.glsl"
@@ -35,6 +35,7 @@ uint firstInterval(ivec2 ray, float code) {
     return low;
 }
 
+#if !PAPER
 /// Light over radiance that a surfel sends through a point: a disk whose tangent plane is bent so that the surfels of a plane together send 2π to every point, as
 /// near as it may be; on the axis π r²/(d² + r²), the disk's closed form for a facing receiver; from afar A cos/d².
 float kernel(float area, float height, float squared) {
@@ -43,10 +44,12 @@ float kernel(float area, float height, float squared) {
     return area * sqrt(height * height + r2) / (sum * sqrt(sum));
 }
 
-/// As printed: πr² max(cos, 0)/max(d², δ).
+#else
+/// As printed: πr² max(cos, 0)/max(d², δ). What the paper calls radiosity is radiance here, or all would be too bright by π.
 float printedKernel(float area, float height, float squared) {
     return area * abs(height) * inversesqrt(max(squared, 1e-30)) / max(squared, splat.nearest);
 }
+#endif
 
 struct Pair {
     vec3 light;    // of the interval, before what is between is asked
@@ -54,9 +57,15 @@ struct Pair {
 };
 
 /// Of the interval's light of all phase functions.
-vec3 scatteredToEye(ivec2 ray, uint interval, float cosine) {
+vec3 scatteredToEye(ivec2 ray, RayWay way, uint interval, float cosine) {
     vec3 sum = vec3(0.0);
-#if PHASE_GROUPS == 1
+#if PAPER
+    // Of point i, counted from 1: (1 − i (1 − τ_min)/(n − 1)) (d_i − d_(i−1)) c_i; negative for the last one, which is never reached.
+    vec4 texel = texelFetch(intervals, ivec3(ray, int(interval)), 0) * kCodes;
+    float through = 1.0 - float(interval + 1u) * (1.0 - way.opacity) / float(map.intervals - 1u);
+    float weight = through * texel.y * way.length * (texel.z / 255.0) * way.largest;
+    sum = weight * texelFetch(totals, ivec3(ray, 0), 0).rgb * phaseFunction(uint(mediaHeader.phases[0].x), mediaHeader.phases[0].y, cosine);
+#elif PHASE_GROUPS == 1
     vec3 weight = texelFetch(totals, ivec3(ray, 0), 0).rgb * texelFetch(intervals, ivec3(ray, int(interval)), 0).yzw;
     sum = weight * phaseFunction(uint(mediaHeader.phases[0].x), mediaHeader.phases[0].y, cosine);
 #else
@@ -78,11 +87,15 @@ Pair pairLight(LitSurfel s, Ray ray, ivec2 number, RayWay way, uint interval) {
     vec3 radiance = height > 0.0 ? s.front.rgb : s.back.rgb;
     float distance = sqrt(squared);
     float cosine = distance > 0.0 ? -dot(off, ray.direction) / distance : 0.0;
-    float form = splat.mode == kSurfelEncodingPaper ? printedKernel(s.position.w, height, squared) : kernel(s.position.w, height, squared);
-    pair.light = radiance * scatteredToEye(number, interval, cosine) * form;
+#if PAPER
+    float form = printedKernel(s.position.w, height, squared);
+#else
+    float form = kernel(s.position.w, height, squared);
+#endif
+    pair.light = radiance * scatteredToEye(number, way, interval, cosine) * form;
     if (splat.attenuation != 0u && maximumOf(pair.light) > 0.0) {
-        vec3 way = distance > 0.0 ? -off / distance : vec3(1.0, 0.0, 0.0);
-        pair.light *= exp(-analyticOpticalDepth(pair.position, way, 0.0, distance));
+        vec3 direction = distance > 0.0 ? -off / distance : vec3(1.0, 0.0, 0.0);
+        pair.light *= exp(-analyticOpticalDepth(pair.position, direction, 0.0, distance));
     }
     return pair;
 }
