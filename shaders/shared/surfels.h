@@ -62,8 +62,8 @@ struct SurfelLightParams {
 struct SurfelBrightness {
     float weighted; // sum of area times the square of radiance
     float total;    // sum of area times radiance
-    uint lit;       // surfels
-    uint splats;    // quads that are drawn, without those that reach nothing
+    float padding0;
+    float padding1;
 };
 
 TYNDALL_CONST uint kSurfelEveryInterval = 2u; // SurfelMapParams.rays: a visibility ray for each interval
@@ -93,15 +93,15 @@ struct SurfelSplatParams {
     uint level;
     uint levels;
     uint surfelCount;
-    uint shift;         // of sub-buffers, this frame's
     float threshold;    // ε
     uint mode;          // kSurfelEncodingPaper: radius and range as printed
     uint attenuation;   // 1: media take light away between surfels and intervals
     uint visibility;    // 1: surfaces block light between surfels and intervals
     float nearest;      // δ of the printed kernel, m²
-    uint seed;
+    uint seed;          // of the frame's chances
     uint tail;          // 1: the last level reaches to infinity
     uint factor;        // pixels along an edge of the square that a ray stands for
+    uint padding0;
 };
 
 /// Uniform block `Collect`.

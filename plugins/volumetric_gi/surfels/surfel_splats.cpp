@@ -1,13 +1,13 @@
 #include "volumetric_gi/surfels/surfel_splats.h"
 
 #include <algorithm>
+#include <bit>
 
-#include "framegraph/hash.h"
 
 namespace tyndall::volumetric_gi {
 namespace {
 
-constexpr uint32_t kVerticesOfSplat = 6;
+constexpr uint32_t kGroup = 256; // surfels of a workgroup that lists them
 constexpr float kFarAway = 1e15f; // metres; its square is finite
 
 struct SplatData {
@@ -16,13 +16,16 @@ struct SplatData {
     SurfelIntervals map;
     SurfelLight surfels;
     TracedBuffers traced;
-    fg::BufferHandle interleave;
+    fg::BufferHandle interleave, list, draws;
     fg::TextureHandle levels;
     gpu::SurfelSplatParams params;
-    uint64_t chance;
     uint32_t phaseGroups;
     int32_t rays, kinds;
 };
+
+SurfelLight readSurfels(fg::Builder& builder, const SurfelLight& surfels) {
+    return {builder.read(surfels.lit), builder.read(surfels.brightness), surfels.count};
+}
 
 /// Clip coordinates over slopes of the view.
 vec2 focalOf(const gpu::ViewData& view) {
@@ -55,7 +58,6 @@ gpu::SurfelSplatParams splatParams(const plugin::FrameInputs& inputs, const Spla
 void drawLevel(const SplatData& data, uint32_t level, fg::PassContext& context) {
     gpu::SurfelSplatParams params = data.params;
     params.level = level;
-    params.shift = uint32_t(fg::mixHash(data.chance, level));
     auto command = context.raster(
         {.vertex = "gi/surfels/splat.vert", .fragment = "gi/surfels/splat.frag"},
         {{"PHASE_GROUPS", int32_t(data.phaseGroups)},
@@ -71,9 +73,59 @@ void drawLevel(const SplatData& data, uint32_t level, fg::PassContext& context) 
         .bind("Interleave", data.interleave)
         .bind("LitSurfels", data.surfels.lit)
         .bind("Brightness", data.surfels.brightness)
+        .bind("SplatList", data.list)
         .colors({fg::Target{data.levels, int32_t(level), 0}})
         .state(state)
-        .draw(kVerticesOfSplat * params.surfelCount);
+        .drawIndirect(data.draws, level * sizeof(fg::DrawArguments));
+}
+
+struct ListData {
+    ViewResources view;
+    SurfelLight surfels;
+    fg::BufferHandle interleave, counts, levels, list, draws;
+    gpu::SurfelSplatParams params;
+};
+
+void recordList(const ListData& data, fg::PassContext& context) {
+    const uint32_t groups = (data.params.surfelCount + kGroup - 1) / kGroup;
+    for (const int32_t stage : {0, 1, 2}) {
+        if (stage > 0) context.barrier(fg::Access::StorageRead);
+        auto command = context.compute("gi/surfels/list.comp", {{"STAGE", stage}});
+        bindView(command, data.view)
+            .params(data.params, "Splat")
+            .bind("Interleave", data.interleave)
+            .bind("LitSurfels", data.surfels.lit)
+            .bind("Brightness", data.surfels.brightness)
+            .bind("GroupCounts", data.counts)
+            .bind("SurfelLevels", data.levels)
+            .bind("SplatList", data.list)
+            .bind("Draws", data.draws)
+            .dispatch(stage == 1 ? 1 : groups);
+    }
+}
+
+/// Which surfels are splatted on which level.
+const ListData& addList(fg::FrameGraph& graph, const plugin::FrameInputs& inputs,
+                        const SplatRequest& request) {
+    return graph.addPass<ListData>(
+        "gi.surfels.list",
+        [&](fg::Builder& builder, ListData& data) {
+            data.view = inputs.view;
+            data.surfels = readSurfels(builder, request.surfels);
+            data.interleave = builder.read(request.interleave);
+            data.params = splatParams(inputs, request);
+            const uint64_t surfels = std::bit_ceil(uint64_t(request.surfels.count)),
+                           groups = std::max(surfels / kGroup, uint64_t(1)),
+                           number = sizeof(uint32_t);
+            data.counts = builder.create("gi.surfels.groupCounts",
+                                         fg::BufferDesc{number * groups * request.levels});
+            data.levels = builder.create("gi.surfels.levelsOf", fg::BufferDesc{number * surfels});
+            data.list =
+                builder.create("gi.surfels.list", fg::BufferDesc{number * surfels * request.levels});
+            data.draws = builder.create("gi.surfels.draws",
+                                        fg::BufferDesc{sizeof(fg::DrawArguments) * request.levels});
+        },
+        [](const ListData& data, fg::PassContext& context) { recordList(data, context); });
 }
 
 /// What filters one level after the other.
@@ -154,17 +206,19 @@ fg::TextureHandle addUpsample(fg::FrameGraph& graph, const plugin::FrameInputs& 
 
 } // namespace
 
-fg::TextureHandle addSurfelSplats(fg::FrameGraph& graph, const plugin::FrameInputs& inputs,
-                                  const SplatRequest& request) {
-    return graph
+SurfelSplats addSurfelSplats(fg::FrameGraph& graph, const plugin::FrameInputs& inputs,
+                             const SplatRequest& request) {
+    const ListData& listed = addList(graph, inputs, request);
+    const fg::TextureHandle levels = graph
         .addPass<SplatData>(
             "gi.surfels.splat",
             [&](fg::Builder& builder, SplatData& data) {
                 data.view = inputs.view;
                 data.media = readMedia(builder, inputs.media);
                 data.map = readIntervals(builder, request.map);
-                data.surfels = {builder.read(request.surfels.lit),
-                                builder.read(request.surfels.brightness), request.surfels.count};
+                data.surfels = readSurfels(builder, request.surfels);
+                data.list = builder.read(listed.list);
+                data.draws = builder.read(listed.draws, fg::Access::Indirect);
                 data.interleave = builder.read(request.interleave);
                 data.params = splatParams(inputs, request);
                 data.rays = int32_t(request.rays);
@@ -176,7 +230,6 @@ fg::TextureHandle addSurfelSplats(fg::FrameGraph& graph, const plugin::FrameInpu
                 if (data.params.visibility == 0 && (!grids || !request.attenuation)) data.rays = 0;
                 if (data.rays != 0) data.traced = readTraced(builder, request.traced);
                 if (data.params.visibility == 0) data.traced.params.treeSize = 0;
-                data.chance = request.chance;
                 data.levels =
                     builder.create("gi.surfels.levels",
                                    fg::texture2DArray(fg::Format::RGBA32F, data.params.textureSize.x,
@@ -190,6 +243,42 @@ fg::TextureHandle addSurfelSplats(fg::FrameGraph& graph, const plugin::FrameInpu
                     drawLevel(data, level, context);
             })
         .levels;
+    return {levels, listed.draws};
+}
+
+fg::BufferHandle addSurfelCounts(fg::FrameGraph& graph, const plugin::FrameInputs& inputs,
+                                 const SplatRequest& request, const SurfelSplats& splats,
+                                 const float (&of)[2]) {
+    struct Data {
+        fg::BufferHandle lit, draws, counts;
+        fg::TextureHandle levels;
+        gpu::SurfelSplatParams params;
+        const float* others;
+    };
+    return graph
+        .addPass<Data>(
+            "gi.surfels.count",
+            [&](fg::Builder& builder, Data& data) {
+                data.lit = builder.read(request.surfels.lit);
+                data.draws = builder.read(splats.draws);
+                data.levels = builder.read(splats.levels);
+                data.params = splatParams(inputs, request);
+                data.others = of;
+                data.counts = builder.create("gi.surfels.counts",
+                                             fg::BufferDesc{kSurfelCounts * sizeof(float)});
+            },
+            [](const Data& data, fg::PassContext& context) {
+                context.upload(data.counts, (kSurfelCounts - 2) * sizeof(float), data.others,
+                               2 * sizeof(float));
+                context.compute("gi/surfels/count.comp")
+                    .params(data.params, "Splat")
+                    .bind("LitSurfels", data.lit)
+                    .bind("Draws", data.draws)
+                    .bind("levels", data.levels)
+                    .bind("Counts", data.counts)
+                    .dispatch(1);
+            })
+        .counts;
 }
 
 fg::TextureHandle addSurfelCollect(fg::FrameGraph& graph, const plugin::FrameInputs& inputs,

@@ -23,10 +23,23 @@ struct SplatRequest {
     uint64_t chance = 0; // of this frame
 };
 
-/// Adds the pass `gi.surfels.splat`. RGBA32F array, a layer a level: nits that reach the eye, w: how many surfels have come to the ray.
-[[nodiscard]] fg::TextureHandle addSurfelSplats(fg::FrameGraph& graph,
-                                                const plugin::FrameInputs& inputs,
-                                                const SplatRequest& request);
+struct SurfelSplats {
+    fg::TextureHandle levels; // RGBA32F array, a layer a level: nits that reach the eye, w: how many surfels have come to the ray
+    fg::BufferHandle draws;   // fg::DrawArguments of each level: six vertices a surfel
+};
+
+/// Adds the passes `gi.surfels.list` and `gi.surfels.splat`.
+[[nodiscard]] SurfelSplats addSurfelSplats(fg::FrameGraph& graph, const plugin::FrameInputs& inputs,
+                                           const SplatRequest& request);
+
+/// Numbers about a frame, in this order: of lit surfels, of quads drawn, of pairs of a surfel and a ray, of surfels, and what their sizes have grown by.
+constexpr uint32_t kSurfelCounts = 5;
+
+/// Adds the pass `gi.surfels.count`: float[kSurfelCounts]. `of`: the last two, which must live until the frame has been executed.
+[[nodiscard]] fg::BufferHandle addSurfelCounts(fg::FrameGraph& graph,
+                                               const plugin::FrameInputs& inputs,
+                                               const SplatRequest& request,
+                                               const SurfelSplats& splats, const float (&of)[2]);
 
 /// Adds the passes `gi.surfels.collect` and `gi.surfels.upsample`. View-sized RGBA32F nits that reach the eye.
 [[nodiscard]] fg::TextureHandle addSurfelCollect(fg::FrameGraph& graph,

@@ -15,7 +15,7 @@ const SettingDesc kSurfelsSettings[] = {
         SurfelsSettings, size, "gi.surfels.size", "Surfel size", "pixels", 0.5f, 256.0f, 10.0f,
         "Edge of the square that a surfel stands for, as large as this in the picture. Smaller surfels resolve light near surfaces better and cost time with their number."),
     TYNDALL_INT(
-        SurfelsSettings, most, "gi.surfels.most", "Most surfels", "", 64, 1048576, 8192,
+        SurfelsSettings, most, "gi.surfels.most", "Most surfels", "", 64, 1048576, 65536,
         "Surfels grow where there would be more than this. More cost time and memory in proportion."),
     TYNDALL_FLOAT(
         SurfelsSettings, far, "gi.surfels.far", "Size far from media", "", 0.0f, 1.0f, 0.1f,
@@ -30,7 +30,7 @@ const SettingDesc kSurfelsSettings[] = {
         SurfelsSettings, jitter, "gi.surfels.jitter", "Jitter", true,
         "Moves the points of intervals from ray to ray, which turns bands into fine noise."),
     TYNDALL_INT(
-        SurfelsSettings, levels, "gi.surfels.levels", "Levels", "", 1, 6, 5,
+        SurfelsSettings, levels, "gi.surfels.levels", "Levels", "", 1, 6, 6,
         "Levels of the interleaved framebuffer: on each, four times fewer surfels stand for all, farther away. More are faster and need more blur."),
     TYNDALL_FLOAT(
         SurfelsSettings, threshold, "gi.surfels.epsilon", "Error threshold", "", 0.0001f, 10.0f,
@@ -61,22 +61,22 @@ const SettingDesc kSurfelsSettings[] = {
 
 constexpr PresetEntry kSurfelsPresets[] = {
     {Quality::Low, "gi.surfels.size", "16"},
-    {Quality::Low, "gi.surfels.most", "4096"},
+    {Quality::Low, "gi.surfels.most", "16384"},
     {Quality::Low, "gi.surfels.intervals", "8"},
     {Quality::Low, "gi.surfels.epsilon", "0.12"},
     {Quality::Low, "gi.surfels.march", "quarter"},
     {Quality::Medium, "gi.surfels.size", "10"},
-    {Quality::Medium, "gi.surfels.most", "8192"},
+    {Quality::Medium, "gi.surfels.most", "65536"},
     {Quality::Medium, "gi.surfels.intervals", "16"},
     {Quality::Medium, "gi.surfels.epsilon", "0.06"},
     {Quality::Medium, "gi.surfels.march", "half"},
     {Quality::High, "gi.surfels.size", "6"},
-    {Quality::High, "gi.surfels.most", "16384"},
+    {Quality::High, "gi.surfels.most", "131072"},
     {Quality::High, "gi.surfels.intervals", "16"},
     {Quality::High, "gi.surfels.epsilon", "0.03"},
     {Quality::High, "gi.surfels.march", "half"},
     {Quality::Ultra, "gi.surfels.size", "4"},
-    {Quality::Ultra, "gi.surfels.most", "65536"},
+    {Quality::Ultra, "gi.surfels.most", "262144"},
     {Quality::Ultra, "gi.surfels.intervals", "32"},
     {Quality::Ultra, "gi.surfels.epsilon", "0.015"},
     {Quality::Ultra, "gi.surfels.march", "full"},

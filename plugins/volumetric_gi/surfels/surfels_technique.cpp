@@ -58,6 +58,31 @@ SurfelsSettings asInThePaper(SurfelsSettings settings) {
     return settings;
 }
 
+/// The skipped pass of a frame without light of surfels.
+fg::TextureHandle addNothing(fg::FrameGraph& graph, const plugin::FrameInputs& inputs,
+                             const char* reason) {
+    struct Data {
+        fg::TextureHandle light;
+    };
+    return graph
+        .addPass<Data>(
+            "gi.surfels.splat",
+            [&](fg::Builder& builder, Data& data) {
+                data.light = builder.create(
+                    "gi.surfels.inScatter",
+                    fg::texture2D(fg::Format::RGBA32F, inputs.view.width, inputs.view.height));
+                builder.skip(reason);
+            },
+            [](const Data&, fg::PassContext&) {})
+        .light;
+}
+
+constexpr plugin::Statistic kStatistics[] = {{"surfels_lit.gi.surfels", 0},
+                                             {"splats.gi.surfels", 1},
+                                             {"pairs.gi.surfels", 2},
+                                             {"surfels.gi.surfels", 3},
+                                             {"size_growth.gi.surfels", 4}};
+
 } // namespace
 
 const plugin::TechniqueInfo& SurfelsTechnique::info() const {
@@ -121,6 +146,19 @@ void SurfelsTechnique::makePlan(const plugin::FrameInputs& inputs) {
     planKey_ = key;
 }
 
+const char* SurfelsTechnique::whyNothing(const plugin::FrameInputs& inputs) {
+    if (inputs.media.count == 0 || !inputs.transmittance) return "no medium in view";
+    if (inputs.lights.lightCount == 0) return "no light in the scene";
+    if (inputs.surfaces->triangleSetCount() == 0) return "no surface in the scene";
+    if (Result<void> ready = scene_.update(inputs, {}); !ready.ok()) {
+        if (said_ != ready.message()) host().log(("surfels: " + ready.message()).c_str());
+        said_ = ready.message();
+        return "the surfaces do not fit into memory";
+    }
+    makePlan(inputs);
+    return plan_.surfels == 0 ? "no surface has an area" : nullptr;
+}
+
 IntervalRequest SurfelsTechnique::intervals(const plugin::FrameInputs& inputs) const {
     IntervalRequest request;
     request.factor = 1 << used_.march;
@@ -137,16 +175,11 @@ IntervalRequest SurfelsTechnique::intervals(const plugin::FrameInputs& inputs) c
 plugin::FrameOutputs SurfelsTechnique::addPasses(fg::FrameGraph& graph,
                                                  const plugin::FrameInputs& inputs) {
     plugin::FrameOutputs outputs;
-    if (inputs.media.count == 0 || !inputs.transmittance || inputs.lights.lightCount == 0)
-        return outputs;
-    if (Result<void> ready = scene_.update(inputs, {}); !ready.ok()) {
-        if (said_ != ready.message()) host().log(("surfels: " + ready.message()).c_str());
-        said_ = ready.message();
+    used_ = asPrinted() ? asInThePaper(settings_) : settings_;
+    if (const char* reason = whyNothing(inputs)) {
+        outputs.inMedia = addNothing(graph, inputs, reason);
         return outputs;
     }
-    used_ = asPrinted() ? asInThePaper(settings_) : settings_;
-    makePlan(inputs);
-    if (plan_.surfels == 0) return outputs;
     if (interleave_.empty()) interleave_ = interleaveTables(gpu::kSurfelMostLevels);
 
     SplatRequest request;
@@ -167,8 +200,15 @@ plugin::FrameOutputs SurfelsTechnique::addPasses(fg::FrameGraph& graph,
     request.nearest = intervals.step * intervals.step;
     request.blur = used_.blur && !converges(inputs);
     request.chance = chanceOf(inputs);
-    const fg::TextureHandle levels = addSurfelSplats(graph, inputs, request);
-    outputs.inMedia = addSurfelCollect(graph, inputs, request, levels);
+    const SurfelSplats splats = addSurfelSplats(graph, inputs, request);
+    if (inputs.statistics) {
+        numbers_[0] = float(plan_.surfels);
+        numbers_[1] = float(plan_.scale);
+        outputs.statistics = addSurfelCounts(graph, inputs, request, splats, numbers_);
+        outputs.statistic = kStatistics;
+        outputs.statisticCount = uint32_t(std::size(kStatistics));
+    }
+    outputs.inMedia = addSurfelCollect(graph, inputs, request, splats.levels);
     return outputs;
 }
 

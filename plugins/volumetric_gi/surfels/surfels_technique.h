@@ -20,6 +20,8 @@ public:
                                    const plugin::FrameInputs& inputs) override;
 
 private:
+    /// Why there is nothing to do in this frame; null where there is.
+    const char* whyNothing(const plugin::FrameInputs& inputs);
     void makePlan(const plugin::FrameInputs& inputs);
     void updateTriangles(const plugin::FrameInputs& inputs);
     [[nodiscard]] Bounds mediaBounds() const;
@@ -33,6 +35,7 @@ private:
     uint64_t trianglesKey_ = 0;
     SurfelPlan plan_;
     uint64_t planKey_ = 0;
+    float numbers_[2] = {}; // for the frame's statistics
     std::vector<uint32_t> interleave_;
     std::string said_; // the last failure
 };

@@ -7,26 +7,19 @@ layout(std430) readonly buffer LitSurfels { LitSurfel lit[]; };
 layout(std430) buffer Brightness { SurfelBrightness brightness; };
 
 shared vec2 sums[256];
-shared uint counts[256];
 
 void main() {
     uint thread = gl_LocalInvocationID.x;
     vec2 sum = vec2(0.0);
-    uint count = 0u;
     for (uint i = thread; i < lighting.surfelCount; i += 256u) {
         float area = lit[i].position.w;
         float radiance = lit[i].normal.w;
         sum += area * radiance * vec2(radiance, 1.0);
-        if (area * radiance > 0.0) ++count;
     }
     sums[thread] = sum;
-    counts[thread] = count;
     for (uint rest = 128u; rest > 0u; rest >>= 1u) {
         barrier();
-        if (thread < rest) {
-            sums[thread] += sums[thread + rest];
-            counts[thread] += counts[thread + rest];
-        }
+        if (thread < rest) sums[thread] += sums[thread + rest];
     }
-    if (thread == 0u) brightness = SurfelBrightness(sums[0].x, sums[0].y, counts[0], 0u);
+    if (thread == 0u) brightness = SurfelBrightness(sums[0].x, sums[0].y, 0.0, 0.0);
 }
