@@ -9,6 +9,8 @@
 #include "scene/scene.h"
 #include "volumetric_gi/shared/scene_bounds.h"
 #include "volumetric_gi/surfels/interleave.h"
+#include "volumetric_gi/surfels/surfel_media.h"
+#include "volumetric_gi/surfels/surfel_surfaces.h"
 
 namespace tyndall::volumetric_gi {
 namespace {
@@ -58,18 +60,18 @@ SurfelsSettings asInThePaper(SurfelsSettings settings) {
     return settings;
 }
 
-/// The skipped pass of a frame without light of surfels.
+/// A skipped pass, of a frame without light of surfels.
 fg::TextureHandle addNothing(fg::FrameGraph& graph, const plugin::FrameInputs& inputs,
-                             const char* reason) {
+                             const char* pass, const char* reason) {
     struct Data {
         fg::TextureHandle light;
     };
     return graph
         .addPass<Data>(
-            "gi.surfels.splat",
+            pass,
             [&](fg::Builder& builder, Data& data) {
                 data.light = builder.create(
-                    "gi.surfels.inScatter",
+                    "gi.surfels.nothing",
                     fg::texture2D(fg::Format::RGBA32F, inputs.view.width, inputs.view.height));
                 builder.skip(reason);
             },
@@ -90,7 +92,7 @@ const plugin::TechniqueInfo& SurfelsTechnique::info() const {
         .name = "surfels",
         .title = "Surfels in a deep screen space",
         .help = "Splats light of surfaces onto the media beside them, in detail near the eye ray.",
-        .claims = terms(Term::LSVE),
+        .claims = terms(Term::LSVE, Term::LSSE),
         .sets = nullptr,
         .setCount = 0,
         .media = kAllMedia,
@@ -146,8 +148,8 @@ void SurfelsTechnique::makePlan(const plugin::FrameInputs& inputs) {
     planKey_ = key;
 }
 
+/// Whether anything can receive light is up to the receivers.
 const char* SurfelsTechnique::whyNothing(const plugin::FrameInputs& inputs) {
-    if (inputs.media.count == 0 || !inputs.transmittance) return "no medium in view";
     if (inputs.lights.lightCount == 0) return "no light in the scene";
     if (inputs.surfaces->triangleSetCount() == 0) return "no surface in the scene";
     if (Result<void> ready = scene_.update(inputs, {}); !ready.ok()) {
@@ -172,43 +174,69 @@ IntervalRequest SurfelsTechnique::intervals(const plugin::FrameInputs& inputs) c
     return request;
 }
 
-plugin::FrameOutputs SurfelsTechnique::addPasses(fg::FrameGraph& graph,
-                                                 const plugin::FrameInputs& inputs) {
-    plugin::FrameOutputs outputs;
-    used_ = asPrinted() ? asInThePaper(settings_) : settings_;
-    if (const char* reason = whyNothing(inputs)) {
-        outputs.inMedia = addNothing(graph, inputs, reason);
-        return outputs;
-    }
-    if (interleave_.empty()) interleave_ = interleaveTables(gpu::kSurfelMostLevels);
-
+SplatRequest SurfelsTechnique::splats(fg::FrameGraph& graph, const plugin::FrameInputs& inputs) {
     SplatRequest request;
-    const fg::BufferHandle surfels =
-        addSurfels(graph, inputs, plan_, Surfelizer(used_.surfelizer), planKey_);
-    request.surfels = addSurfelLight(graph, inputs, surfels, plan_.surfels);
-    const IntervalRequest intervals = this->intervals(inputs);
-    request.map = addSurfelIntervals(graph, inputs, intervals);
-    request.interleave = addCachedUpload(graph, "gi.surfels.interleave", interleave_, 1);
     request.rays = SurfelRays(used_.rays);
     if (request.rays != SurfelRays::None) request.traced = scene_.buffers(graph);
-    request.media = mediaBounds();
     request.levels = SurfelPairs(used_.pairs) == SurfelPairs::All ? 1 : uint32_t(used_.levels);
     request.threshold = double(used_.threshold);
     request.attenuation = used_.attenuation;
     request.visibility = used_.visibility && request.rays != SurfelRays::None;
     request.paper = asPrinted();
-    request.nearest = intervals.step * intervals.step;
     request.blur = used_.blur && !converges(inputs);
     request.chance = chanceOf(inputs);
-    const SurfelSplats splats = addSurfelSplats(graph, inputs, request);
+    const fg::BufferHandle surfels =
+        addSurfels(graph, inputs, plan_, Surfelizer(used_.surfelizer), planKey_);
+    request.surfels = addSurfelLight(graph, inputs, surfels, plan_.surfels);
+    if (interleave_.empty()) interleave_ = interleaveTables(gpu::kSurfelMostLevels);
+    request.interleave = addCachedUpload(graph, "gi.surfels.interleave", interleave_, 1);
+    return request;
+}
+
+void SurfelsTechnique::addMedia(fg::FrameGraph& graph, const plugin::FrameInputs& inputs,
+                                SplatRequest request, plugin::FrameOutputs& outputs) {
+    const IntervalRequest intervals = this->intervals(inputs);
+    const SurfelIntervals map = addSurfelIntervals(graph, inputs, intervals);
+    request.size = map.params.size;
+    request.factor = intervals.factor;
+    request.reached = mediaBounds();
+    request.nearest = intervals.step * intervals.step;
+    const SplatList list = addSplatList(graph, inputs, request);
+    const fg::TextureHandle levels = addMediaSplats(graph, inputs, request, map, list);
+    outputs.inMedia = addMediaCollect(graph, inputs, request, map, levels);
     if (inputs.statistics) {
         numbers_[0] = float(plan_.surfels);
         numbers_[1] = float(plan_.scale);
-        outputs.statistics = addSurfelCounts(graph, inputs, request, splats, numbers_);
+        outputs.statistics = addSurfelCounts(graph, list, levels, numbers_);
         outputs.statistic = kStatistics;
         outputs.statisticCount = uint32_t(std::size(kStatistics));
     }
-    outputs.inMedia = addSurfelCollect(graph, inputs, request, splats.levels);
+}
+
+plugin::FrameOutputs SurfelsTechnique::addPasses(fg::FrameGraph& graph,
+                                                 const plugin::FrameInputs& inputs) {
+    plugin::FrameOutputs outputs;
+    used_ = asPrinted() ? asInThePaper(settings_) : settings_;
+    const bool inMedia = (inputs.terms & ~kIndirectOnSurfaces) != 0;
+    const char* reason = whyNothing(inputs);
+    const char* noMedium = reason ? reason
+                           : inputs.media.count == 0 || !inputs.transmittance
+                               ? "no medium in view"
+                               : nullptr;
+    if (inMedia && noMedium) outputs.inMedia = addNothing(graph, inputs, "gi.surfels.splat", noMedium);
+    const bool onSurfaces = (inputs.terms & kIndirectOnSurfaces) != 0;
+    if (onSurfaces && reason)
+        outputs.onSurfaces = addNothing(graph, inputs, "gi.surfels.splatSurfaces", reason);
+    if (reason || (noMedium && !onSurfaces)) return outputs;
+
+    SplatRequest request = splats(graph, inputs);
+    if (inMedia && !noMedium) addMedia(graph, inputs, request, outputs);
+    if (onSurfaces) {
+        request.size = ivec2(inputs.view.width, inputs.view.height);
+        request.paper = false; // the paper has none
+        outputs.onSurfaces =
+            addSurfaceSplats(graph, inputs, request, addSplatList(graph, inputs, request));
+    }
     return outputs;
 }
 

@@ -6,6 +6,7 @@
 
 #include "volumetric_gi/shared/gi_technique.h"
 #include "volumetric_gi/surfels/surfel_patches.h"
+#include "volumetric_gi/surfels/interval_map.h"
 #include "volumetric_gi/surfels/surfel_splats.h"
 #include "volumetric_gi/surfels/surfels_settings.h"
 
@@ -25,6 +26,10 @@ private:
     void makePlan(const plugin::FrameInputs& inputs);
     void updateTriangles(const plugin::FrameInputs& inputs);
     [[nodiscard]] Bounds mediaBounds() const;
+    /// The surfels of this frame and how they are splatted, on whatever receives their light.
+    SplatRequest splats(fg::FrameGraph& graph, const plugin::FrameInputs& inputs);
+    void addMedia(fg::FrameGraph& graph, const plugin::FrameInputs& inputs, SplatRequest request,
+                  plugin::FrameOutputs& outputs);
     [[nodiscard]] IntervalRequest intervals(const plugin::FrameInputs& inputs) const;
 
     SurfelsSettings settings_{};

@@ -5,6 +5,7 @@
 #include "gi/surfels/splat.glsl"
 #include "common/phase_function.glsl"
 #include "gi/surfels/interval_map.glsl"
+#include "gi/surfels/kernel.glsl"
 #include "media/nearest_rays.glsl"
 #include "media/optical_depth.glsl"
 #if RAYS
@@ -35,16 +36,7 @@ uint firstInterval(ivec2 ray, float code) {
     return low;
 }
 
-#if !PAPER
-/// Light over radiance that a surfel sends through a point: a disk whose tangent plane is bent so that the surfels of a plane together send 2π to every point, as
-/// near as it may be; on the axis π r²/(d² + r²), the disk's closed form for a facing receiver; from afar A cos/d².
-float kernel(float area, float height, float squared) {
-    float r2 = area * (1.0 / kPi);
-    float sum = squared + r2;
-    return area * sqrt(height * height + r2) / (sum * sqrt(sum));
-}
-
-#else
+#if PAPER
 /// As printed: πr² max(cos, 0)/max(d², δ). What the paper calls radiosity is radiance here, or all would be too bright by π.
 float printedKernel(float area, float height, float squared) {
     return area * abs(height) * inversesqrt(max(squared, 1e-30)) / max(squared, splat.nearest);
