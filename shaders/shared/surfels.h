@@ -115,5 +115,18 @@ struct SurfelCollectParams {
     uint plain;      // 1: all rays count alike
 };
 
+TYNDALL_CONST uint kSurfelShowDisks = 1u;
+TYNDALL_CONST uint kSurfelShowLevels = 2u;
+TYNDALL_CONST uint kSurfelShowUnshuffled = 3u;
+TYNDALL_CONST uint kSurfelShowIntervals = 4u;
+
+/// Uniform block `Show`.
+struct SurfelShowParams {
+    uint what;
+    float white;    // nits that the picture shows white
+    float nearest;  // metres that are shown black,
+    float farthest; // and white
+};
+
 TYNDALL_SHARED_END
 #endif

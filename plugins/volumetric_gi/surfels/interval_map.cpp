@@ -46,7 +46,10 @@ SurfelIntervals addSurfelIntervals(fg::FrameGraph& graph, const plugin::FrameInp
                                       {{"PHASE_GROUPS", int32_t(data.media.phaseGroups)},
                                        {"MEDIA_KINDS", mediaKinds(data.media, false)}});
             bindMedia(bindView(command, data.view), data.media);
-            bindIntervals(command, data.map).bind("depth", data.depth).dispatchOver(data.map.ways);
+            bindIntervals(command, data.map)
+                .params(data.map.march)
+                .bind("depth", data.depth)
+                .dispatchOver(data.map.ways);
         });
     return pass.map;
 }

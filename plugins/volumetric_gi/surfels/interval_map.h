@@ -36,7 +36,6 @@ struct IntervalRequest {
 
 template <typename Command> Command& bindIntervals(Command& command, const SurfelIntervals& map) {
     return command.params(map.params, "IntervalMap")
-        .params(map.march)
         .bind("ways", map.ways)
         .bind("totals", map.totals)
         .bind("intervals", map.intervals);

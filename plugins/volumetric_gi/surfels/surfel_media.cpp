@@ -44,6 +44,7 @@ fg::TextureHandle addCollect(fg::FrameGraph& graph, const plugin::FrameInputs& i
             [](const CollectData& data, fg::PassContext& context) {
                 auto command = context.compute("gi/surfels/collect.comp");
                 bindIntervals(bindView(command, data.view), data.map)
+                    .params(data.map.march)
                     .params(data.params, "Collect")
                     .bind("Interleave", data.interleave)
                     .bind("depth", data.depth)
@@ -126,7 +127,7 @@ fg::TextureHandle addMediaSplats(fg::FrameGraph& graph, const plugin::FrameInput
                          {"PAPER", data.list.params.mode == gpu::kSurfelEncodingPaper}});
                     bindMedia(bindView(command, data.view), data.media);
                     if (data.rays != 0) bindTraced(command, data.traced);
-                    bindIntervals(command, data.map);
+                    bindIntervals(command, data.map).params(data.map.march);
                     return command;
                 });
             })

@@ -18,7 +18,7 @@ const SettingDesc kSurfelsSettings[] = {
         SurfelsSettings, most, "gi.surfels.most", "Most surfels", "", 64, 1048576, 65536,
         "Surfels grow where there would be more than this. More cost time and memory in proportion."),
     TYNDALL_FLOAT(
-        SurfelsSettings, far, "gi.surfels.far", "Size far from media", "", 0.0f, 1.0f, 0.1f,
+        SurfelsSettings, far, "gi.surfels.far", "Size far from media", "", 0.0f, 1.0f, 0.03f,
         "A surfel is at least as large as this times its distance from the media. Higher has fewer surfels far from media of limited extent; 0 has no such limit."),
     TYNDALL_ENUM(
         SurfelsSettings, surfelizer, "gi.surfels.surfelizer", "Made by", kSurfelizerNames, 0,

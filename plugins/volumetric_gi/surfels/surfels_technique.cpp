@@ -204,6 +204,8 @@ void SurfelsTechnique::addMedia(fg::FrameGraph& graph, const plugin::FrameInputs
     const SplatList list = addSplatList(graph, inputs, request);
     const fg::TextureHandle levels = addMediaSplats(graph, inputs, request, map, list);
     outputs.inMedia = addMediaCollect(graph, inputs, request, map, levels);
+    made_.map = map;
+    made_.levels = levels;
     if (inputs.statistics) {
         numbers_[0] = float(plan_.surfels);
         numbers_[1] = float(plan_.scale);
@@ -216,6 +218,7 @@ void SurfelsTechnique::addMedia(fg::FrameGraph& graph, const plugin::FrameInputs
 plugin::FrameOutputs SurfelsTechnique::addPasses(fg::FrameGraph& graph,
                                                  const plugin::FrameInputs& inputs) {
     plugin::FrameOutputs outputs;
+    made_ = {};
     used_ = asPrinted() ? asInThePaper(settings_) : settings_;
     const bool inMedia = (inputs.terms & ~kIndirectOnSurfaces) != 0;
     const char* reason = whyNothing(inputs);
@@ -230,6 +233,8 @@ plugin::FrameOutputs SurfelsTechnique::addPasses(fg::FrameGraph& graph,
     if (reason || (noMedium && !onSurfaces)) return outputs;
 
     SplatRequest request = splats(graph, inputs);
+    made_.surfels = request.surfels;
+    made_.interleave = request.interleave;
     if (inMedia && !noMedium) addMedia(graph, inputs, request, outputs);
     if (onSurfaces) {
         request.size = ivec2(inputs.view.width, inputs.view.height);
@@ -238,6 +243,15 @@ plugin::FrameOutputs SurfelsTechnique::addPasses(fg::FrameGraph& graph,
             addSurfaceSplats(graph, inputs, request, addSplatList(graph, inputs, request));
     }
     return outputs;
+}
+
+fg::TextureHandle SurfelsTechnique::addDebugView(fg::FrameGraph& graph,
+                                                 const plugin::FrameInputs& inputs,
+                                                 fg::TextureHandle color) {
+    const fg::TextureHandle shown =
+        addSurfelsShow(graph, inputs, made_, uint32_t(used_.show), color);
+    made_ = {};
+    return shown;
 }
 
 std::unique_ptr<GiTechnique> makeSurfels(SharedParts& shared) {

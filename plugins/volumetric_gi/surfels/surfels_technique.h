@@ -9,6 +9,7 @@
 #include "volumetric_gi/surfels/interval_map.h"
 #include "volumetric_gi/surfels/surfel_splats.h"
 #include "volumetric_gi/surfels/surfels_settings.h"
+#include "volumetric_gi/surfels/surfels_show.h"
 
 namespace tyndall::volumetric_gi {
 
@@ -19,6 +20,8 @@ public:
     plugin::SettingsTable settings() override;
     plugin::FrameOutputs addPasses(fg::FrameGraph& graph,
                                    const plugin::FrameInputs& inputs) override;
+    fg::TextureHandle addDebugView(fg::FrameGraph& graph, const plugin::FrameInputs& inputs,
+                                   fg::TextureHandle color) override;
 
 private:
     /// Why there is nothing to do in this frame; null where there is.
@@ -41,6 +44,7 @@ private:
     SurfelPlan plan_;
     uint64_t planKey_ = 0;
     float numbers_[2] = {}; // for the frame's statistics
+    SurfelsOfFrame made_; // handles of this frame alone
     std::vector<uint32_t> interleave_;
     std::string said_; // the last failure
 };
