@@ -34,8 +34,11 @@ SurfelIntervals addSurfelIntervals(fg::FrameGraph& graph, const plugin::FrameInp
                                       fg::texture2D(fg::Format::RGBA32F, width, height));
             map.totals = builder.create(
                 "gi.surfels.totals", fg::texture2DArray(fg::Format::RGBA32F, width, height, groups));
-            map.intervals = builder.create(
-                "gi.surfels.intervals",
+            map.places = builder.create(
+                "gi.surfels.places", fg::BufferDesc{uint64_t(width) * uint64_t(height) *
+                                                    request.count * sizeof(uint16_t)});
+            map.shares = builder.create(
+                "gi.surfels.shares",
                 fg::texture2DArray(fg::Format::RGBA16, width, height, int(request.count) * groups));
         },
         [](const Data& data, fg::PassContext& context) {
@@ -47,6 +50,7 @@ SurfelIntervals addSurfelIntervals(fg::FrameGraph& graph, const plugin::FrameInp
                                        {"MEDIA_KINDS", mediaKinds(data.media, false)}});
             bindMedia(bindView(command, data.view), data.media);
             bindIntervals(command, data.map)
+                .bind("shares", data.map.shares)
                 .params(data.map.march)
                 .bind("depth", data.depth)
                 .dispatchOver(data.map.ways);
@@ -58,7 +62,8 @@ SurfelIntervals readIntervals(fg::Builder& builder, const SurfelIntervals& map) 
     SurfelIntervals read = map;
     read.ways = builder.read(map.ways);
     read.totals = builder.read(map.totals);
-    read.intervals = builder.read(map.intervals);
+    read.shares = builder.read(map.shares);
+    read.places = builder.read(map.places);
     return read;
 }
 

@@ -11,7 +11,8 @@ namespace tyndall::volumetric_gi {
 struct SurfelIntervals {
     fg::TextureHandle ways;      // RGBA32F a ray: start and length of the way through media, metres; opacity
     fg::TextureHandle totals;    // RGBA32F array, a layer a phase function: light that the ray scatters, of light from all around
-    fg::TextureHandle intervals; // RGBA16 array, layers by interval and phase function: place, shares of the total
+    fg::TextureHandle shares;    // RGBA16 array, layers by interval and phase function: shares of the total
+    fg::BufferHandle places;     // of each ray's intervals, 16 bits each
     gpu::SurfelMapParams params{};
     gpu::MarchParams march{}; // which pixel a ray is of
 };
@@ -38,7 +39,7 @@ template <typename Command> Command& bindIntervals(Command& command, const Surfe
     return command.params(map.params, "IntervalMap")
         .bind("ways", map.ways)
         .bind("totals", map.totals)
-        .bind("intervals", map.intervals);
+        .bind("IntervalPlaces", map.places);
 }
 
 } // namespace tyndall::volumetric_gi

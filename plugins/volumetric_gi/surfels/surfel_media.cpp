@@ -127,7 +127,9 @@ fg::TextureHandle addMediaSplats(fg::FrameGraph& graph, const plugin::FrameInput
                          {"PAPER", data.list.params.mode == gpu::kSurfelEncodingPaper}});
                     bindMedia(bindView(command, data.view), data.media);
                     if (data.rays != 0) bindTraced(command, data.traced);
-                    bindIntervals(command, data.map).params(data.map.march);
+                    bindIntervals(command, data.map)
+                        .params(data.map.march)
+                        .bind("shares", data.map.shares);
                     return command;
                 });
             })

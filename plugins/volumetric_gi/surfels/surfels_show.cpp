@@ -75,7 +75,7 @@ fg::TextureHandle addPanels(fg::FrameGraph& graph, const SurfelsOfFrame& made,
                 context.compute("gi/surfels/show.comp")
                     .params(data.map.params, "IntervalMap")
                     .bind("ways", data.map.ways)
-                    .bind("intervals", data.map.intervals)
+                    .bind("IntervalPlaces", data.map.places)
                     .params(data.params, "Show")
                     .bind("Interleave", data.interleave)
                     .bind("levels", data.levels)

@@ -13,6 +13,10 @@ const float kCodeRatio = 1e4;
 const float kCodeBits = 13.28785616; // log2(1 + kCodeRatio)
 const float kCodes = 65535.0;
 
+#ifndef INTERVAL_PLACES
+#define INTERVAL_PLACES readonly
+#endif
+
 // PAPER: codes are steps of a march, whose length is in the place of the way's; a ray also has its largest coefficient.
 #ifndef PAPER
 #define PAPER 0
@@ -38,6 +42,15 @@ float codeOfDistance(RayWay way, float distance) {
     if (PAPER != 0) return along;
     if (!(along > 0.0)) return 0.0;
     return along > 1.0 ? kCodes + 1.0 : log2(1.0 + kCodeRatio * along) * (kCodes / kCodeBits);
+}
+
+/// Codes of a ray's points, two in a word.
+layout(std430) INTERVAL_PLACES buffer IntervalPlaces { uint intervalPlaces[]; };
+
+uint placesOf(ivec2 ray) { return uint(ray.y * map.size.x + ray.x) * (map.intervals / 2u); }
+
+uint placeCode(uint places, uint interval) {
+    return intervalPlaces[places + interval / 2u] >> (16u * (interval & 1u)) & 0xffffu;
 }
 
 int intervalLayer(uint interval, uint group) { return int(interval * map.groups + group); }

@@ -2,6 +2,7 @@
 #define MARCH_PHASE_GROUPS PHASE_GROUPS
 #include "common/random.glsl"
 #include "common/view.glsl"
+#define INTERVAL_PLACES
 #include "gi/surfels/interval_map.glsl"
 #include "media/march_loop.glsl"
 #include "media/nearest_rays.glsl"
@@ -12,7 +13,7 @@ layout(std140) uniform Params { MarchParams params; };
 uniform sampler2D depth;
 layout(rgba32f) writeonly uniform image2D ways;
 layout(rgba32f) writeonly uniform image2DArray totals;
-layout(rgba16) writeonly uniform image2DArray intervals;
+layout(rgba16) writeonly uniform image2DArray shares;
 
 struct Light {
     vec3 of[PHASE_GROUPS];
@@ -45,6 +46,7 @@ float fractionAtOpacity(vec3 before, vec3 depth, float target) {
 struct Cutter {
     uint next;      // event: point of interval next/2, then its border
     float code;     // of the interval's point
+    uint before;    // of the one before
     uvec3 done[PHASE_GROUPS]; // of the light of each phase function, codes
 };
 
@@ -57,10 +59,12 @@ float eventOpacity(uint e, float shift, float opacity) {
 /// The border of an interval: `light` has gone since the beginning, of `total`.
 void putBorder(ivec2 ray, inout Cutter cutter, Light light, Light total) {
     uint interval = cutter.next / 2u;
+    if ((interval & 1u) == 0u) cutter.before = uint(cutter.code);
+    else intervalPlaces[placesOf(ray) + interval / 2u] = cutter.before | uint(cutter.code) << 16u;
     for (uint g = 0u; g < map.groups; ++g) {
         vec3 part = light.of[g] / max(total.of[g], vec3(1e-37));
         uvec3 code = max(uvec3(clamp(part, 0.0, 1.0) * kCodes + 0.5), cutter.done[g]);
-        imageStore(intervals, ivec3(ray, intervalLayer(interval, g)), vec4(cutter.code, vec3(code - cutter.done[g])) / kCodes);
+        imageStore(shares, ivec3(ray, intervalLayer(interval, g)), vec4(vec3(code - cutter.done[g]), 0.0) / kCodes);
         cutter.done[g] = code;
     }
 }
@@ -99,6 +103,7 @@ void main() {
     Cutter cutter;
     cutter.next = 0u;
     cutter.code = 0.0;
+    cutter.before = 0u;
     for (int g = 0; g < PHASE_GROUPS; ++g) cutter.done[g] = uvec3(0u);
     Light sum;
     for (int g = 0; g < PHASE_GROUPS; ++g) sum.of[g] = vec3(0.0);

@@ -2,6 +2,7 @@
 // have 8 bits over the ray's largest, and that one 8 bits over the largest of all media. With the printed thresholds the last point is never reached.
 #include "common/random.glsl"
 #include "common/view.glsl"
+#define INTERVAL_PLACES
 #include "gi/surfels/interval_map.glsl"
 #include "media/density.glsl"
 #include "media/nearest_rays.glsl"
@@ -12,7 +13,7 @@ layout(std140) uniform Params { MarchParams params; };
 uniform sampler2D depth;
 layout(rgba32f) writeonly uniform image2D ways;
 layout(rgba32f) writeonly uniform image2DArray totals;
-layout(rgba16) writeonly uniform image2DArray intervals;
+layout(rgba16) writeonly uniform image2DArray shares;
 
 const uint kMostSteps = 4096u; // n_max
 
@@ -81,7 +82,8 @@ void main() {
     for (i = 0u; i < map.intervals; ++i) {
         float length = i > 0u ? float(at[i] - at[i - 1u]) : 0.0;
         float code = round(coefficient[i] / max(ofAll, 1e-30) * 255.0);
-        imageStore(intervals, ivec3(number, int(i)), vec4(float(at[i]), length, code, 0.0) / kCodes);
+        imageStore(shares, ivec3(number, int(i)), vec4(length, code, 0.0, 0.0) / kCodes);
+        if ((i & 1u) != 0u) intervalPlaces[placesOf(number) + i / 2u] = at[i - 1u] | at[i] << 16u;
     }
     imageStore(ways, number, vec4((jitter - 1.0) * map.step, empty ? 0.0 : map.step, least, ofAll));
 }

@@ -7,7 +7,6 @@ layout(local_size_x = 8, local_size_y = 8) in;
 layout(std140) uniform Show { SurfelShowParams show; };
 uniform sampler2DArray levels;
 uniform sampler2D ways;
-uniform sampler2DArray intervals;
 layout(rgba32f) writeonly uniform image2D shown;
 
 const float kBrighter = 8.0; // than the picture: each level has a part of the light
@@ -25,7 +24,7 @@ vec3 depthAt(uint interval, vec2 at) {
     ivec2 ray = ivec2(at * vec2(map.size));
     RayWay way = rayWay(texelFetch(ways, ray, 0));
     if (!(way.length > 0.0)) return vec3(0.0);
-    float code = texelFetch(intervals, ivec3(ray, intervalLayer(interval, 0u)), 0).x * kCodes;
+    float code = float(placeCode(placesOf(ray), interval));
     return vec3(show.white * clamp((distanceOfCode(way, code) - show.nearest) / (show.farthest - show.nearest), 0.0, 1.0));
 }
 

@@ -18,19 +18,18 @@ flat in vec2 shell;
 
 uniform sampler2D ways;
 uniform sampler2DArray totals;
-uniform sampler2DArray intervals;
+uniform sampler2DArray shares;
 layout(std140) uniform Params { MarchParams params; };
 
 layout(location = 0) out vec4 light; // w: 1 for each surfel that has come to the ray
 
 /// The first interval whose point is not before `code`.
-uint firstInterval(ivec2 ray, float code) {
+uint firstInterval(uint places, float code) {
     uint low = 0u;
     uint high = map.intervals;
     while (low < high) {
         uint middle = (low + high) / 2u;
-        float at = texelFetch(intervals, ivec3(ray, intervalLayer(middle, 0u)), 0).x * kCodes;
-        if (at < code) low = middle + 1u;
+        if (float(placeCode(places, middle)) < code) low = middle + 1u;
         else high = middle;
     }
     return low;
@@ -53,26 +52,25 @@ vec3 scatteredToEye(ivec2 ray, RayWay way, uint interval, float cosine) {
     vec3 sum = vec3(0.0);
 #if PAPER
     // Of point i, counted from 1: (1 − i (1 − τ_min)/(n − 1)) (d_i − d_(i−1)) c_i; negative for the last one, which is never reached.
-    vec4 texel = texelFetch(intervals, ivec3(ray, int(interval)), 0) * kCodes;
+    vec2 texel = texelFetch(shares, ivec3(ray, int(interval)), 0).rg * kCodes;
     float through = 1.0 - float(interval + 1u) * (1.0 - way.opacity) / float(map.intervals - 1u);
-    float weight = through * texel.y * way.length * (texel.z / 255.0) * way.largest;
+    float weight = through * texel.x * way.length * (texel.y / 255.0) * way.largest;
     sum = weight * texelFetch(totals, ivec3(ray, 0), 0).rgb * phaseFunction(uint(mediaHeader.phases[0].x), mediaHeader.phases[0].y, cosine);
 #elif PHASE_GROUPS == 1
-    vec3 weight = texelFetch(totals, ivec3(ray, 0), 0).rgb * texelFetch(intervals, ivec3(ray, int(interval)), 0).yzw;
+    vec3 weight = texelFetch(totals, ivec3(ray, 0), 0).rgb * texelFetch(shares, ivec3(ray, int(interval)), 0).rgb;
     sum = weight * phaseFunction(uint(mediaHeader.phases[0].x), mediaHeader.phases[0].y, cosine);
 #else
     for (uint g = 0u; g < map.groups; ++g) {
-        vec3 weight = texelFetch(totals, ivec3(ray, int(g)), 0).rgb * texelFetch(intervals, ivec3(ray, intervalLayer(interval, g)), 0).yzw;
+        vec3 weight = texelFetch(totals, ivec3(ray, int(g)), 0).rgb * texelFetch(shares, ivec3(ray, intervalLayer(interval, g)), 0).rgb;
         sum += weight * phaseFunction(uint(mediaHeader.phases[g].x), mediaHeader.phases[g].y, cosine);
     }
 #endif
     return sum;
 }
 
-Pair pairLight(LitSurfel s, Ray ray, ivec2 number, RayWay way, uint interval) {
-    float code = texelFetch(intervals, ivec3(number, intervalLayer(interval, 0u)), 0).x * kCodes;
+Pair pairLight(LitSurfel s, Ray ray, ivec2 number, uint places, RayWay way, uint interval) {
     Pair pair;
-    pair.position = ray.origin + ray.direction * distanceOfCode(way, code);
+    pair.position = ray.origin + ray.direction * distanceOfCode(way, float(placeCode(places, interval)));
     vec3 off = pair.position - s.position.xyz;
     float squared = dot(off, off);
     float height = dot(off, s.normal.xyz);
@@ -116,18 +114,19 @@ void main() {
     float abreast = dot(toSurfel, ray.direction);
     vec3 aside = toSurfel - abreast * ray.direction;
     float off = dot(aside, aside);
+    uint places = placesOf(number);
     float outer = shell.y * shell.y - off;
     if (!(outer > 0.0)) return;
     outer = sqrt(outer);
-    uint first = firstInterval(number, codeOfDistance(way, abreast - outer));
-    uint end = firstInterval(number, codeOfDistance(way, abreast + outer));
+    uint first = firstInterval(places, codeOfDistance(way, abreast - outer));
+    uint end = firstInterval(places, codeOfDistance(way, abreast + outer));
     uint hole = end;
     uint holeEnd = end;
     float inner = shell.x * shell.x - off;
     if (inner > 0.0) {
         inner = sqrt(inner);
-        hole = firstInterval(number, codeOfDistance(way, abreast - inner));
-        holeEnd = firstInterval(number, codeOfDistance(way, abreast + inner));
+        hole = firstInterval(places, codeOfDistance(way, abreast - inner));
+        holeEnd = firstInterval(places, codeOfDistance(way, abreast + inner));
     }
     vec3 sum = vec3(0.0);
 #if RAYS == 1
@@ -139,7 +138,7 @@ void main() {
     for (uint i = first; i < end; ++i) {
         if (i == hole) i = holeEnd;
         if (i >= end) break;
-        Pair pair = pairLight(s, ray, number, way, i);
+        Pair pair = pairLight(s, ray, number, places, way, i);
 #if RAYS == 1
         float strength = maximumOf(pair.light);
         total += strength;
