@@ -83,7 +83,7 @@ Pair pairLight(LitSurfel s, Ray ray, ivec2 number, uint places, RayWay way, uint
     float form = kernel(s.position.w, height, squared);
 #endif
     pair.light = radiance * scatteredToEye(number, way, interval, cosine) * form;
-    if (splat.attenuation != 0u && maximumOf(pair.light) > 0.0) {
+    if (RAYS != 1 && splat.attenuation != 0u && maximumOf(pair.light) > 0.0) {
         vec3 direction = distance > 0.0 ? -off / distance : vec3(1.0, 0.0, 0.0);
         pair.light *= exp(-analyticOpticalDepth(pair.position, direction, 0.0, distance));
     }
@@ -97,7 +97,9 @@ vec3 between(Pair pair, LitSurfel s) {
     if (splat.attenuation == 0u) return vec3(1.0);
     vec3 way = s.position.xyz - pair.position;
     float distance = length(way);
-    return exp(-gridOpticalDepth(pair.position, way / max(distance, 1e-30), 0.0, distance));
+    way /= max(distance, 1e-30);
+    if (RAYS == 1) return exp(-opticalDepthAlong(pair.position, way, distance));
+    return exp(-gridOpticalDepth(pair.position, way, 0.0, distance));
 }
 #endif
 
