@@ -1,0 +1,305 @@
+// Surfels in pictures: the hierarchy against all pairs, all pairs against integrals in double
+// precision, and what theory says of planes. technique_laws_test.cpp has what holds for all techniques.
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include "core/image_metrics.h"
+#include "gi_scenes.h"
+#include "support/render.h"
+
+namespace tyndall::test {
+namespace {
+
+const std::string kFog =
+    R"({"name": "fog", "medium": {"type": "homogeneous", "shape": "box", "size": [4, 3, 4], "scattering": [0.3, 0.3, 0.3],
+    "absorption": [0, 0.1, 0.2], "anisotropy": 0.5}, "translation": [0, 1.5, 0]},)";
+
+RenderOptions surfels(std::vector<std::string> settings, int width = 32, int height = 24) {
+    RenderOptions options;
+    options.width = width;
+    options.height = height;
+    options.gi = "surfels";
+    options.terms = terms(Term::LSVE);
+    options.settings = std::move(settings);
+    return options;
+}
+
+std::vector<std::string> with(std::vector<std::string> settings,
+                              const std::vector<std::string>& more) {
+    settings.insert(settings.end(), more.begin(), more.end());
+    return settings;
+}
+
+Image pictureOf(const Scene& scene, const RenderOptions& options) {
+    return sharedRenderer().render(scene, options).terms.at("LSVE");
+}
+
+/// Means of 4 × 4 blocks of a picture, all channels, and of the whole.
+std::array<double, 17> blocksOf(const Image& image) {
+    std::array<double, 17> sums{};
+    for (int y = 0; y < image.height; ++y)
+        for (int x = 0; x < image.width; ++x)
+            for (int c = 0; c < 3; ++c) {
+                const double value = double(image.at(x, y)[c]) / (3.0 * image.width * image.height);
+                sums[16] += value;
+                sums[size_t(y * 4 / image.height * 4 + x * 4 / image.width)] += 16 * value;
+            }
+    return sums;
+}
+
+/// Two estimates with the same seeds: t of their differences, of all of the picture and of each block.
+void expectTheSameMean(const Scene& scene, const RenderOptions& one, const RenderOptions& other,
+                       uint32_t seeds) {
+    std::array<double, 17> sum{}, squares{}, means{};
+    for (uint32_t seed = 0; seed < seeds; ++seed) {
+        RenderOptions first = one, second = other;
+        first.seed = second.seed = seed;
+        const auto a = blocksOf(pictureOf(scene, first)), b = blocksOf(pictureOf(scene, second));
+        for (size_t i = 0; i < a.size(); ++i) {
+            sum[i] += a[i] - b[i];
+            squares[i] += (a[i] - b[i]) * (a[i] - b[i]);
+            means[i] += b[i];
+        }
+    }
+    const double n = seeds;
+    for (size_t i = 0; i < sum.size(); ++i) {
+        const double mean = sum[i] / n, variance = (squares[i] - n * mean * mean) / (n - 1),
+                     error = std::sqrt(variance / n);
+        const double t = error > 0 ? mean / error : 0;
+        printf("%s %zu: %+.4f of the light, standard error %.4f, t %+.2f\n",
+               i == 16 ? "picture" : "block", i, mean / (means[i] / n), error / (means[i] / n), t);
+        EXPECT_GT(means[i], 0);
+        EXPECT_LE(std::abs(t), 3.5) << i; // 2 of 1000 blocks by chance
+        // An estimate that says nothing is no evidence.
+        EXPECT_LT(error / (means[i] / n), i == 16 ? 0.01 : 0.1) << i;
+    }
+}
+
+class SurfelHierarchy : public ::testing::TestWithParam<const char*> {};
+
+TEST_P(SurfelHierarchy, ItsMeanIsThatOfAllPairs) {
+    // A threshold that is reached near by: most pairs are of coarse levels.
+    const std::vector<std::string> settings = {"gi.surfels.blur=false",
+                                               "gi.surfels.march=full",
+                                               "gi.surfels.levels=5",
+                                               "gi.surfels.most=512",
+                                               "gi.surfels.intervals=8",
+                                               "gi.surfels.epsilon=0.2",
+                                               std::string("gi.surfels.rays=") + GetParam()};
+    expectTheSameMean(sceneFromJson(corner(50, kFog)), surfels(settings),
+                      surfels(with(settings, {"gi.surfels.pairs=all"})), 64);
+}
+
+INSTANTIATE_TEST_SUITE_P(Rays, SurfelHierarchy, ::testing::Values("none", "one"),
+                         [](const auto& given) { return std::string(given.param); });
+
+TEST(Surfels, OneRayIsInTheMeanEveryRay) {
+    // A wall with a hole stands in the light's way to the fog.
+    const std::string wall =
+        R"({"name": "screen", "primitive": {"shape": "box", "size": [0.05, 2, 1.5]}, "translation": [0.6, 1, 0]},)";
+    const std::vector<std::string> settings = {"gi.surfels.pairs=all", "gi.surfels.blur=false",
+                                               "gi.surfels.march=full", "gi.surfels.most=256",
+                                               "gi.surfels.intervals=8"};
+    expectTheSameMean(sceneFromJson(corner(50, kFog + wall)),
+                      surfels(with(settings, {"gi.surfels.rays=one"})),
+                      surfels(with(settings, {"gi.surfels.rays=every"})), 24);
+}
+
+/// A plane of 4 m by 4 m in y = 0 under a sun, and a box of fog beside it that is not in the sun's way.
+struct PlaneAndFog {
+    static constexpr double kLux = 30, kAlbedo = 0.8;
+    dvec3 scattering{0.3, 0.5, 0.2}, absorption{0.1, 0, 0.3};
+    double anisotropy = 0.4;
+    dvec3 minimum{2.5, 0.5, -1.5}, maximum{4.5, 2, 1.5};
+    dvec3 eye{3, 1.2, 6};
+    double yfov = 0.5;
+
+    [[nodiscard]] std::string json() const {
+        const dvec3 size = maximum - minimum, middle = 0.5 * (maximum + minimum);
+        return fmt::format(
+            R"({{"tyndall": 1, "nodes": [
+            {{"name": "floor", "primitive": {{"shape": "plane", "size": [4, 4]}}, "material": {{"baseColor": [{0}, {0}, {0}], "specular": 0}}}},
+            {{"name": "fog", "medium": {{"type": "homogeneous", "shape": "box", "size": [{1}, {2}, {3}], "scattering": [{4}, {5}, {6}],
+                "absorption": [{7}, {8}, {9}], "anisotropy": {10}}}, "translation": [{11}, {12}, {13}]}},
+            {{"name": "sun", "light": {{"type": "directional", "intensity": {14}}}, "rotation": [-0.70710678, 0, 0, 0.70710678]}},
+            {{"name": "eye", "camera": {{"type": "perspective", "yfov": {15}}}, "translation": [{16}, {17}, {18}]}}],
+            "camera": "eye"}})",
+            kAlbedo, size.x, size.y, size.z, scattering.x, scattering.y, scattering.z, absorption.x,
+            absorption.y, absorption.z, anisotropy, middle.x, middle.y, middle.z, kLux, yfov, eye.x,
+            eye.y, eye.z);
+    }
+
+    [[nodiscard]] dvec3 direction(int x, int y, int width, int height) const {
+        const double slope = std::tan(yfov / 2);
+        return glm::normalize(dvec3(((x + 0.5) / width * 2 - 1) * slope * width / height,
+                                    (1 - (y + 0.5) / height * 2) * slope, -1));
+    }
+
+    /// Metres of a ray inside the fog, from and to.
+    [[nodiscard]] dvec2 span(const dvec3& origin, const dvec3& along, double end) const {
+        double t0 = 0, t1 = end;
+        for (int axis = 0; axis < 3; ++axis) {
+            double a = (minimum[axis] - origin[axis]) / along[axis],
+                   b = (maximum[axis] - origin[axis]) / along[axis];
+            if (a > b) std::swap(a, b);
+            t0 = std::max(t0, a);
+            t1 = std::min(t1, b);
+        }
+        return {t0, std::max(t0, t1)};
+    }
+
+    /// Nits that reach the eye: midpoints along the ray and over the plane.
+    [[nodiscard]] dvec3 lightTo(const dvec3& along) const {
+        constexpr int kSteps = 48, kCells = 96;
+        const dvec2 way = span(eye, along, 1e9);
+        const dvec3 extinction = scattering + absorption;
+        const double step = (way.y - way.x) / kSteps, cell = 4.0 / kCells,
+                     radiance = kAlbedo / kPi * kLux;
+        dvec3 sum(0);
+        for (int i = 0; i < kSteps && step > 0; ++i) {
+            const dvec3 point = eye + along * (way.x + (i + 0.5) * step);
+            dvec3 arriving(0);
+            for (int z = 0; z < kCells; ++z)
+                for (int x = 0; x < kCells; ++x) {
+                    const dvec3 off = dvec3((x + 0.5) * cell - 2, 0, (z + 0.5) * cell - 2) - point;
+                    const double squared = glm::dot(off, off), distance = std::sqrt(squared);
+                    const dvec2 inside = span(point, off / distance, distance);
+                    // Light travels along -off, then to the eye along -along.
+                    const double cosine = glm::dot(off / distance, along), g = anisotropy;
+                    const double phase =
+                        (1 - g * g) / (4 * kPi * std::pow(1 + g * g - 2 * g * cosine, 1.5));
+                    arriving += glm::exp(-extinction * (inside.y - inside.x)) *
+                                (radiance * point.y / distance / squared * cell * cell * phase);
+                }
+            const dvec3 before = glm::exp(-extinction * ((i + 0.5) * step));
+            sum += before * scattering * arriving * step;
+        }
+        return sum;
+    }
+};
+
+TEST(Surfels, AllPairsAreTheIntegralOverThePlaneAndTheRay) {
+    const PlaneAndFog scene;
+    const std::vector<std::string> settings = {
+        "gi.surfels.pairs=all",    "gi.surfels.size=0.5",
+        "gi.surfels.most=131072",  "gi.surfels.far=0",
+        "gi.surfels.intervals=32", "gi.surfels.jitter=false",
+        "gi.surfels.rays=none",    "gi.surfels.blur=false",
+        "gi.surfels.march=full",   "media.march.minTransmittance=0"};
+    const int width = 32, height = 24;
+    const Image picture = pictureOf(sceneFromJson(scene.json()), surfels(settings, width, height));
+    int compared = 0;
+    for (int y = 2; y < height; y += 4)
+        for (int x = 3; x < width; x += 5) {
+            const dvec3 expected = scene.lightTo(scene.direction(x, y, width, height));
+            const float* found = picture.at(x, y);
+            if (expected.x == 0) {
+                EXPECT_EQ(found[0], 0) << x << ", " << y;
+                continue;
+            }
+            ++compared;
+            printf("%2d, %2d: %.4f %.4f %.4f, over the integral %.4f %.4f %.4f\n", x, y,
+                   double(found[0]), double(found[1]), double(found[2]),
+                   double(found[0]) / expected.x, double(found[1]) / expected.y,
+                   double(found[2]) / expected.z);
+            for (int c = 0; c < 3; ++c)
+                EXPECT_NEAR(double(found[c]) / expected[c], 1, 0.02)
+                    << x << ", " << y << ", channel " << c;
+        }
+    EXPECT_GT(compared, 8);
+}
+
+TEST(Surfels, LightOfAPlaneIsEvenDownToItsSurface) {
+    // A plane of 8 m, lit evenly, seen from above in parallel; a layer of fog at `height` surfels above it. From each point of it the plane fills 2π, less what lies behind its
+    // edges: four rectangles with a corner below the point.
+    const double side = 8, lux = 20, albedo = 0.7, sigma = 0.01, thickness = 0.002,
+                 pixel = 0.2; // metres
+    const int width = 16, height = 30;
+    for (const double above : {0.05, 0.2, 1.0, 3.0}) {
+        const double level = above * pixel;
+        const Scene scene = sceneFromJson(fmt::format(
+            R"({{"tyndall": 1, "nodes": [
+            {{"name": "floor", "primitive": {{"shape": "plane", "size": [{0}, {0}]}}, "material": {{"baseColor": [{1}, {1}, {1}], "specular": 0}}}},
+            {{"name": "fog", "medium": {{"type": "homogeneous", "shape": "box", "size": [30, {2}, 30], "scattering": [{3}, {3}, {3}],
+                "absorption": [0, 0, 0]}}, "translation": [0, {4}, 0]}},
+            {{"name": "sun", "light": {{"type": "directional", "intensity": {5}}}, "rotation": [-0.70710678, 0, 0, 0.70710678]}},
+            {{"name": "eye", "camera": {{"type": "orthographic", "ymag": {6}}}, "translation": [0, 10, 0], "rotation": [-0.70710678, 0, 0, 0.70710678]}}],
+            "camera": "eye"}})",
+            side, albedo, thickness, sigma, level, lux, 0.5 * pixel * height));
+        const Image picture = pictureOf(
+            scene, surfels({"gi.surfels.pairs=all", "gi.surfels.size=1", "gi.surfels.most=131072",
+                            "gi.surfels.far=0", "gi.surfels.intervals=8", "gi.surfels.rays=none",
+                            "gi.surfels.blur=false", "gi.surfels.march=full"},
+                           width, height));
+        double sum = 0, least = 1e30, most = 0;
+        int pixels = 0;
+        for (int y = height / 2 - 6; y < height / 2 + 6; ++y)
+            for (int x = width / 2 - 6; x < width / 2 + 6; ++x) {
+                const double px = (x + 0.5 - width / 2) * pixel,
+                             py = (y + 0.5 - height / 2) * pixel;
+                double angle = 0;
+                for (const double a : {side / 2 - px, side / 2 + px})
+                    for (const double b : {side / 2 - py, side / 2 + py})
+                        angle +=
+                            std::atan(a * b / (level * std::sqrt(a * a + b * b + level * level)));
+                const double expected = albedo / kPi * lux * angle * sigma / (4 * kPi) * thickness;
+                const double ratio = double(picture.at(x, y)[0]) / expected;
+                sum += ratio;
+                least = std::min(least, ratio);
+                most = std::max(most, ratio);
+                ++pixels;
+            }
+        printf("%.2f surfels above the plane: %.4f of the light, from %.4f to %.4f\n", above,
+               sum / pixels, least, most);
+        EXPECT_NEAR(sum / pixels, 1, 0.05) << above;
+    }
+}
+
+TEST(Surfels, AFogOfNoDensityChangesNoBit) {
+    const std::string nothing =
+        R"({"name": "nothing", "medium": {"type": "homogeneous", "shape": "box", "size": [2, 2, 2], "scattering": [0, 0, 0],
+        "absorption": [0, 0, 0]}, "translation": [0.3, 1, 0.2]},)";
+    for (const std::string& fog : {std::string(), kFog}) {
+        RenderOptions options = surfels({});
+        options.terms = kAllTerms;
+        const Image
+            without = sharedRenderer().render(sceneFromJson(corner(50, fog)), options).beauty,
+            other =
+                sharedRenderer().render(sceneFromJson(corner(50, fog + nothing)), options).beauty;
+        EXPECT_GT(test::meanOf(without), 0);
+        EXPECT_EQ(without.pixels, other.pixels);
+    }
+}
+
+TEST(Surfels, AHundredThousandDimSurfelsAddUp) {
+    // Few rays in a narrow view, so surfels are some 12 mm wide: 41 m² have 1e5 and more of them, 1e-4 of the light and less each.
+    const std::string scene = fmt::format(
+        R"({{"tyndall": 1, "nodes": [
+        {{"name": "floor", "primitive": {{"shape": "plane", "size": [4, 4]}}, "material": {{"baseColor": [0.8, 0.6, 0.4], "specular": 0}}}}, {}
+        {{"name": "lamp", "light": {{"type": "point", "intensity": 1e-6, "radius": 0.05}}, "translation": [0.5, 2, 0.3]}},
+        {{"name": "eye", "camera": {{"type": "perspective", "yfov": 0.15}}, "translation": [0, 1.5, 6]}}],
+        "camera": "eye"}})",
+        kFog);
+    const auto meanAt = [&](const char* size) {
+        RenderOptions options =
+            surfels({"gi.surfels.pairs=all", "gi.surfels.most=131072", "gi.surfels.far=0",
+                     "gi.surfels.intervals=8", "gi.surfels.rays=none", "gi.surfels.jitter=false",
+                     "gi.surfels.blur=false", "gi.surfels.march=eighth",
+                     std::string("gi.surfels.size=") + size},
+                    80, 60);
+        return test::meanOf(pictureOf(sceneFromJson(scene), options));
+    };
+    const double coarse = meanAt("2"), fine = meanAt("1"), finest = meanAt("0.5");
+    printf("%.6e, %.6e, %.6e\n", coarse, fine, finest);
+    EXPECT_GT(fine, 0);
+    EXPECT_NEAR(fine / coarse, 1, 0.02);
+    EXPECT_NEAR(finest / fine, 1, 0.02);
+}
+
+} // namespace
+} // namespace tyndall::test
