@@ -125,6 +125,16 @@ TEST(SurfelHierarchy, ItsMeanIsThatOfAllPairsWithARayEach) {
                expected, 64, 0.01);
 }
 
+TEST(SurfelHierarchy, ARayForOneIntervalStandsForAll) {
+    // The same without the hierarchy's noise: whichever interval is asked, the mean is that of all.
+    const Scene scene = twoFaces(
+        R"({"name": "screen", "primitive": {"shape": "box", "size": [3, 0.05, 2]}, "material": {"baseColor": [0, 0, 0], "specular": 0}, "translation": [0, 1, 0.3]},)");
+    const auto given = with(kFew, {"gi.surfels.most=96", "gi.surfels.pairs=all"});
+    const Image expected =
+        pictureOf(scene, surfels(with(given, {"gi.surfels.rays=every"}), 16, 12));
+    expectMean(scene, surfels(with(given, {"gi.surfels.rays=one"}), 16, 12), expected, 64, 0.002);
+}
+
 /// A plane of 4 m by 4 m in y = 0 under a sun, and a box of fog beside it that is not in the sun's way.
 struct PlaneAndFog {
     static constexpr double kLux = 30, kAlbedo = 0.8;
@@ -227,6 +237,65 @@ TEST(Surfels, AllPairsAreTheIntegralOverThePlaneAndTheRay) {
                     << x << ", " << y << ", channel " << c;
         }
     EXPECT_GE(compared, 8);
+}
+
+TEST(Surfels, OneSurfelIsADisk) {
+    // A triangle of three surfels, two of which are cut out: the corner with alpha 1 has two thirds of it at the surfel next to it. A layer of thin fog lies above; a ray down the
+    // disk's axis sees πr²/(r² + d²) of its radiance, and one far aside A cos θ/d².
+    const double area = 1.5, side = std::sqrt(area * 4 / std::sqrt(3.0)), disk = area / 3, lux = 20,
+                 albedo = 0.7, sigma = 0.01, thickness = 0.002, pixel = 1;
+    const int size = 21;
+    for (const double height : {0.03, 0.1, 0.4, 1.0, 4.0}) {
+        Scene scene = sceneFromJson(fmt::format(
+            R"({{"tyndall": 1, "nodes": [
+            {{"name": "surface", "primitive": {{"shape": "plane", "size": [1, 1]}}, "material": {{"baseColor": [{0}, {0}, {0}], "specular": 0}}}},
+            {{"name": "fog", "medium": {{"type": "homogeneous", "shape": "box", "size": [60, {1}, 60], "scattering": [{2}, {2}, {2}],
+                "absorption": [0, 0, 0]}}, "translation": [0, {3}, 0]}},
+            {{"name": "sun", "light": {{"type": "directional", "intensity": {4}}}, "rotation": [-0.70710678, 0, 0, 0.70710678]}},
+            {{"name": "eye", "camera": {{"type": "orthographic", "ymag": {5}}}, "translation": [0, 20, 0], "rotation": [-0.70710678, 0, 0, 0.70710678]}}],
+            "camera": "eye"}})",
+            albedo, thickness, sigma, height, lux, 0.5 * pixel * size));
+        Mesh& mesh = scene.meshes.at(0);
+        const auto corner = [&](double turn) {
+            return vec3(float(side / std::sqrt(3.0) * std::sin(turn)), 0,
+                        float(side / std::sqrt(3.0) * std::cos(turn)));
+        };
+        mesh.positions = {corner(0), corner(2 * kPi / 3), corner(4 * kPi / 3)};
+        // Of weights 2/3, 1/6, 1/6: half of the way from the middle to the first corner.
+        const vec3 surfel = 0.5f * mesh.positions[0];
+        for (vec3& position : mesh.positions) position -= surfel;
+        mesh.normals.assign(3, vec3(0, 1, 0));
+        mesh.tangents.clear();
+        mesh.uvs = {};
+        mesh.colors = {vec4(1), vec4(1, 1, 1, 0), vec4(1, 1, 1, 0)};
+        mesh.indices = {0, 1, 2};
+        mesh.bounds = {};
+        for (const vec3& position : mesh.positions) mesh.bounds.include(dvec3(position));
+        scene.materials.at(0).alphaMode = AlphaMode::Mask;
+        scene.materials.at(0).alphaCutoff = 0.5f;
+        const Image picture = pictureOf(
+            scene, surfels({"gi.surfels.pairs=all", "gi.surfels.size=256", "gi.surfels.far=0",
+                            "gi.surfels.intervals=8", "gi.surfels.rays=none",
+                            "gi.surfels.blur=false", "gi.surfels.march=full"},
+                           size, size));
+        const double unit = albedo / kPi * lux * sigma / (4 * kPi) * thickness, r2 = disk / kPi;
+        const auto at = [&](int x, int y) {
+            return double(picture.at(size / 2 + x, size / 2 + y)[0]) / unit;
+        };
+        const double onAxis = at(0, 0), expected = kPi * r2 / (r2 + height * height);
+        printf("%.2f m before the disk of %.2f m: %.4f of its light\n", height, std::sqrt(r2),
+               onAxis / expected);
+        EXPECT_NEAR(onAxis / expected, 1, 0.01)
+            << height; // the fog's own depth, and a layer as thick as 1/15 of the least height
+        if (height < 3) continue;
+        // From ten radii away, in all directions: by (r/d)² and less.
+        for (const auto& [x, y] :
+             {std::pair(3, 0), std::pair(0, -5), std::pair(-6, 6), std::pair(10, 10)}) {
+            const double squared = x * x + y * y + height * height;
+            EXPECT_NEAR(at(x, y) / (disk * height / std::pow(squared, 1.5)), 1, 0.015)
+                << x << ", " << y;
+        }
+    }
 }
 
 TEST(Surfels, LightOfAPlaneIsEvenDownToItsSurface) {
