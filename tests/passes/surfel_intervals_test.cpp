@@ -1,4 +1,5 @@
-// The transmittance interval map against closed forms along the rays: what intervals weigh, and where
+// The transmittance interval map against closed forms along the rays: what intervals weigh, and
+// where
 // their points lie.
 
 #include <algorithm>
@@ -324,7 +325,8 @@ int expectBoxes(const std::vector<Way>& ways, const std::vector<Box>& boxes, uin
         for (uint32_t i = 0; ofPoints && i < count; ++i) {
             const double target = (i + 0.5) / count * opacity;
             const double at = way.distances[i], off = way.resolution(at);
-            // The opacity grows along the ray: the wanted one is met within the resolution, and where it is a matter of rounding.
+            // The opacity grows along the ray: the wanted one is met within the
+            // resolution, and where it is a matter of rounding.
             const double before = 1 - meanOf(expectedOf(stretches, 1, at - off).through),
                          behind = 1 - meanOf(expectedOf(stretches, 1, at + off).through);
             EXPECT_GE(target, before - kSum)
@@ -443,7 +445,8 @@ TEST_P(SurfelIntervalsTest, AReducedPictureHasRaysOfPixels) {
 }
 
 TEST_P(SurfelIntervalsTest, FarAndThinMediaKeepTheirPlaces) {
-    // 1 cm behind a kilometre of nothing: the way begins where the medium does, and points are told apart in it.
+    // 1 cm behind a kilometre of nothing: the way begins where the medium does, and points
+    // are told apart in it.
     const std::vector<Box> thin = {
         {{-1e4, -1e4, -1000.01}, {1e4, 1e4, -1000}, dvec3(100), dvec3(0)}};
     for (const Way& way : mapOf(thin)) {
@@ -487,7 +490,8 @@ TEST_P(SurfelIntervalsTest, FarAndThinMediaKeepTheirPlaces) {
     }
 }
 
-/// Rays through a density field along which transmittance is summed up in double precision, albedo 1.
+/// Rays through a density field along which transmittance is summed up in double precision,
+/// albedo 1.
 void expectField(const std::vector<Way>& ways, const std::function<double(const dvec3&)>& density,
                  const dvec3& extinction, uint32_t count, double tolerance) {
     constexpr int kSteps = 40000;
@@ -535,7 +539,8 @@ TEST_P(SurfelIntervalsTest, HeightFogIsCutByItsTransmittance) {
         Request request;
         request.count = count;
         request.surface = 12;
-        // Inside a segment extinction is taken to be linear: the chord of an exponential over a step of 1/16 of the light is off by less than a hundredth of it.
+        // Inside a segment extinction is taken to be linear: the chord of an exponential
+        // over a step of 1/16 of the light is off by less than a hundredth of it.
         expectField(mapOf(scene, request), density, dvec3(0.2, 0.3, 0.4), count, 1e-3);
     }
 }
@@ -567,13 +572,15 @@ TEST_P(SurfelIntervalsTest, AFieldThatJumpsFromVoxelToVoxelIsCutByItsTransmittan
         for (const Way& way : mapOf(scene, request))
             if (way.length > 1) filled.push_back(way);
         ASSERT_GT(filled.size(), 20u);
-        // In a cell extinction is linear between its ends, as the field is not: a part of what a cell of 0.1 m with a density of up to 3 takes.
+        // In a cell extinction is linear between its ends, as the field is not: a part
+        // of what a cell of 0.1 m with a density of up to 3 takes.
         expectField(filled, density, dvec3(1, dvec3(0.7f).x, dvec3(0.4f).x), count, 0.03);
     }
 }
 
 TEST_P(SurfelIntervalsTest, StepsThroughAFieldHaveOneTransmittance) {
-    // Not cell by cell but in steps: both walks take the same, so distances rise and the light is that of the opacity.
+    // Not cell by cell but in steps: both walks take the same, so distances rise and the
+    // light is that of the opacity.
     DenseField field({0, 0, 0}, {24, 24, 24});
     Draw draw(6);
     for (float& voxel : field.voxels) voxel = float(draw.uniform(0, 3));

@@ -195,7 +195,8 @@ private:
 };
 TYNDALL_GL_TESTS(SurfelPointsTest);
 
-// Tessellators compute in fixed point with 16 bits after the point: some 1.5e-5 of the patch. The compute shader rounds as floats do.
+// Tessellators compute in fixed point with 16 bits after the point: some 1.5e-5 of the patch.
+// The compute shader rounds as floats do.
 constexpr double kFixedPoint = 4e-5;
 
 TEST_P(SurfelPointsTest, TheTessellatorsSurfelsAreThoseOfTheComputeShader) {
@@ -305,7 +306,8 @@ TEST_P(SurfelPointsTest, AreasSumToThePatchAndPointsToItsCentre) {
 }
 
 TEST_P(SurfelPointsTest, SharesAreThoseOfBandsBetweenScaledTriangles) {
-    // Ring k is in the band between the triangles scaled by 1 - 2k/(n + 1) and 1 - 2(k + 1)/(n + 1), of which its points have equal parts.
+    // Ring k is in the band between the triangles scaled by 1 - 2k/(n + 1) and 1 - 2(k +
+    // 1)/(n + 1), of which its points have equal parts.
     place(sceneOf(lambert(), false));
     const std::vector<gpu::Surfel> all = surfels(Surfelizer::Tessellator);
     for (size_t patch = 0; patch < placed_.size(); ++patch) {
@@ -331,7 +333,8 @@ TEST_P(SurfelPointsTest, SharesAreThoseOfBandsBetweenScaledTriangles) {
 }
 
 TEST_P(SurfelPointsTest, ThreePointsIntegrateQuadraticFunctions) {
-    // Over a triangle the mean of (x·v)² is (c₀² + c₁² + c₂² + 9 m²)/12, c at the corners and m at the centre.
+    // Over a triangle the mean of (x·v)² is (c₀² + c₁² + c₂² + 9 m²)/12, c at the corners
+    // and m at the centre.
     place(sceneOf(lambert(), false));
     const std::vector<gpu::Surfel> all = surfels(Surfelizer::Compute);
     for (size_t patch = 0; patch < placed_.size(); ++patch) {

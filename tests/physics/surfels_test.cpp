@@ -1,5 +1,6 @@
 // Surfels in pictures: the hierarchy against all pairs, all pairs against integrals in double
-// precision, and what theory says of planes. technique_laws_test.cpp has what holds for all techniques.
+// precision, and what theory says of planes. technique_laws_test.cpp has what holds for all
+// techniques.
 
 #include <algorithm>
 #include <array>
@@ -52,8 +53,10 @@ std::array<double, 17> blocksOf(const Image& image) {
     return sums;
 }
 
-/// A floor and a wall, each of one face, in fog; `more` between them. All pieces are of three surfels
-/// and more, and the lamp is a point: nothing but the hierarchy and the choice of rays is by chance.
+/// A floor and a wall, each of one face, in fog; `more` between them. All pieces are of three
+/// surfels
+/// and more, and the lamp is a point: nothing but the hierarchy and the choice of rays is by
+/// chance.
 Scene twoFaces(const std::string& more = "") {
     return sceneFromJson(fmt::format(
         R"({{"tyndall": 1, "nodes": [
@@ -135,7 +138,8 @@ TEST(SurfelHierarchy, ARayForOneIntervalStandsForAll) {
     expectMean(scene, surfels(with(given, {"gi.surfels.rays=one"}), 16, 12), expected, 64, 0.002);
 }
 
-/// A plane of 4 m by 4 m in y = 0 under a sun, and a box of fog beside it that is not in the sun's way.
+/// A plane of 4 m by 4 m in y = 0 under a sun, and a box of fog beside it that is not in the
+/// sun's way.
 struct PlaneAndFog {
     static constexpr double kLux = 30, kAlbedo = 0.8;
     dvec3 scattering{0.3, 0.5, 0.2}, absorption{0.1, 0, 0.3};
@@ -143,12 +147,14 @@ struct PlaneAndFog {
     dvec3 minimum{2.5, 0.5, -1.5}, maximum{4.5, 2, 1.5};
     dvec3 eye{3, 1.2, 6};
     double yfov = 0.5;
+    bool turned = false; // the plane's normal down
 
     [[nodiscard]] std::string json() const {
         const dvec3 size = maximum - minimum, middle = 0.5 * (maximum + minimum);
         return fmt::format(
             R"({{"tyndall": 1, "nodes": [
-            {{"name": "floor", "primitive": {{"shape": "plane", "size": [4, 4]}}, "material": {{"baseColor": [{0}, {0}, {0}], "specular": 0}}}},
+            {{"name": "floor", "primitive": {{"shape": "plane", "size": [4, 4]}}, "material": {{"baseColor": [{0}, {0}, {0}], "specular": 0}},
+                "rotation": [0, 0, {19}, {20}]}},
             {{"name": "fog", "medium": {{"type": "homogeneous", "shape": "box", "size": [{1}, {2}, {3}], "scattering": [{4}, {5}, {6}],
                 "absorption": [{7}, {8}, {9}], "anisotropy": {10}}}, "translation": [{11}, {12}, {13}]}},
             {{"name": "sun", "light": {{"type": "directional", "intensity": {14}}}, "rotation": [-0.70710678, 0, 0, 0.70710678]}},
@@ -156,7 +162,7 @@ struct PlaneAndFog {
             "camera": "eye"}})",
             kAlbedo, size.x, size.y, size.z, scattering.x, scattering.y, scattering.z, absorption.x,
             absorption.y, absorption.z, anisotropy, middle.x, middle.y, middle.z, kLux, yfov, eye.x,
-            eye.y, eye.z);
+            eye.y, eye.z, turned ? 1 : 0, turned ? 0 : 1);
     }
 
     [[nodiscard]] dvec3 direction(int x, int y, int width, int height) const {
@@ -239,8 +245,33 @@ TEST(Surfels, AllPairsAreTheIntegralOverThePlaneAndTheRay) {
     EXPECT_GE(compared, 8);
 }
 
+TEST(Surfels, BothSidesOfAPlaneReflectWhatReachesThem) {
+    const std::vector<std::string> settings = {"gi.surfels.pairs=all", "gi.surfels.rays=none",
+                                               "gi.surfels.jitter=false", "gi.surfels.blur=false",
+                                               "gi.surfels.march=full"};
+    PlaneAndFog scene;
+    const double up =
+        test::meanOf(pictureOf(sceneFromJson(scene.json()), surfels(settings, 16, 12)));
+    scene.turned = true;
+    const double down =
+        test::meanOf(pictureOf(sceneFromJson(scene.json()), surfels(settings, 16, 12)));
+    EXPECT_GT(up, 0);
+    EXPECT_NEAR(down / up, 1, 0.005); // triangles are cut elsewhere
+    // No light leaves the side that the sun does not see.
+    for (const bool turned : {false, true}) {
+        scene.turned = turned;
+        scene.minimum = {2.5, -2, -1.5};
+        scene.maximum = {4.5, -0.5, 1.5};
+        scene.eye = {3, -1.2, 6};
+        EXPECT_EQ(test::meanOf(pictureOf(sceneFromJson(scene.json()), surfels(settings, 16, 12))),
+                  0)
+            << turned;
+    }
+}
+
 TEST(Surfels, OneSurfelIsADisk) {
-    // A triangle of three surfels, two of which are cut out: the corner with alpha 1 has two thirds of it at the surfel next to it. A layer of thin fog lies above; a ray down the
+    // A triangle of three surfels, two of which are cut out: the corner with alpha 1 has two
+    // thirds of it at the surfel next to it. A layer of thin fog lies above; a ray down the
     // disk's axis sees πr²/(r² + d²) of its radiance, and one far aside A cos θ/d².
     const double area = 1.5, side = std::sqrt(area * 4 / std::sqrt(3.0)), disk = area / 3, lux = 20,
                  albedo = 0.7, sigma = 0.01, thickness = 0.002, pixel = 1;
@@ -299,7 +330,8 @@ TEST(Surfels, OneSurfelIsADisk) {
 }
 
 TEST(Surfels, LightOfAPlaneIsEvenDownToItsSurface) {
-    // A plane of 6 m, lit evenly, seen from above in parallel; a layer of fog at `height` surfels above it. From each point of it the plane fills 2π, less what lies behind its
+    // A plane of 6 m, lit evenly, seen from above in parallel; a layer of fog at `height`
+    // surfels above it. From each point of it the plane fills 2π, less what lies behind its
     // edges: four rectangles with a corner below the point.
     const double side = 6, lux = 20, albedo = 0.7, sigma = 0.01, thickness = 0.002,
                  pixel = 0.2; // metres
@@ -361,7 +393,8 @@ TEST(Surfels, AFogOfNoDensityChangesNoBit) {
 }
 
 TEST(Surfels, AHundredThousandDimSurfelsAddUp) {
-    // A narrow view makes surfels of 12 mm and fewer of 24 mm; in either case of more than single steps of 16 bits or of half precision. Each has 1e-5 of the light.
+    // A narrow view makes surfels of 12 mm and fewer of 24 mm; in either case of more than
+    // single steps of 16 bits or of half precision. Each has 1e-5 of the light.
     const Scene scene = sceneFromJson(fmt::format(
         R"({{"tyndall": 1, "nodes": [
         {{"name": "floor", "primitive": {{"shape": "plane", "size": [4, 4]}}, "material": {{"baseColor": [0.8, 0.6, 0.4], "specular": 0}}}}, {}

@@ -1,4 +1,5 @@
-// The tables that spread rays over sub-buffers: permutations, their inverses, and blue noise by a discrete Fourier transform.
+// The tables that spread rays over sub-buffers: permutations, their inverses, and blue noise by
+// a discrete Fourier transform.
 
 #include <algorithm>
 #include <cmath>
@@ -30,7 +31,8 @@ void expectPermutation(std::vector<uint32_t> values) {
     EXPECT_EQ(values, all);
 }
 
-/// Mean power of a 0-1 pattern over the frequencies between two radii, in periods a tile; without the mean, which is at 0.
+/// Mean power of a 0-1 pattern over the frequencies between two radii, in periods a tile;
+/// without the mean, which is at 0.
 double powerWithin(const std::vector<double>& pattern, double low, double high) {
     const int side = int(kSide);
     double sum = 0;
@@ -61,7 +63,8 @@ TEST(SurfelInterleave, TheLowestRanksAreBlueNoise) {
         const uint32_t points = kArea / part;
         std::vector<double> pattern(kArea);
         for (size_t i = 0; i < kArea; ++i) pattern[i] = ranksOfTile()[i] < points ? 1 : 0;
-        // Points taken at random have M(1 - M/N)N/(N - 1) at all frequencies. Blue noise begins where there are as many periods as points in a row, √M.
+        // Points taken at random have M(1 - M/N)N/(N - 1) at all frequencies. Blue noise
+        // begins where there are as many periods as points in a row, √M.
         const double white = points * (1 - 1.0 / part) * kArea / (kArea - 1.0);
         const double begins = std::min(std::sqrt(double(points)), kSide / 2.0);
         const double low = powerWithin(pattern, 0, begins / 2) / white;
