@@ -11,6 +11,7 @@ namespace {
 
 constexpr uint32_t kMostLevel = gpu::kSurfelMostLevel;
 constexpr double kFewest = 3; // points that a patch has at least
+constexpr uint32_t kMostSurfelsOfSet = 65535; // Mesa's software drivers count a draw's points with 16 bits
 constexpr int kMostCuts = 40; // of one triangle after another; 2^-40 of its area is nothing
 
 /// A patch while it is cut.
@@ -69,7 +70,7 @@ private:
 
     /// The level whose number of points, about 3/4 (n + 1)², is nearest.
     static uint32_t levelFor(double wanted) {
-        return uint32_t(std::clamp(std::lround(std::sqrt(wanted * 4 / 3)) - 1, 1l, 1l << 20));
+        return uint32_t(std::clamp(std::round(std::sqrt(wanted * 4 / 3)) - 1, 1.0, 1e6));
     }
 
     void cut(const Piece& piece) {
@@ -116,13 +117,30 @@ private:
     std::vector<Piece> pieces_;
 };
 
+/// Patches of one object from `first` on, in as many draws as they need.
+void addSets(SurfelPlan& plan, uint32_t set, uint32_t first) {
+    SurfelPlan::Set part{set, first, 0, 0, 0};
+    for (uint32_t i = first; i < plan.patches.size(); ++i) {
+        const gpu::SurfelPatch& patch = plan.patches[i];
+        const uint32_t surfels = surfelsOfLevel(patch.level);
+        if (part.surfels + surfels > kMostSurfelsOfSet) {
+            plan.sets.push_back(part);
+            part = {set, i, 0, 0, 0};
+        }
+        if (part.patches == 0) part.firstSurfel = patch.firstSurfel;
+        ++part.patches;
+        part.surfels += surfels;
+    }
+    if (part.patches > 0) plan.sets.push_back(part);
+}
+
 /// False where there are too many surfels.
 bool tryPlan(std::span<const SurfelTriangles> objects, const SurfelSize& size, uint32_t most,
              uint64_t seed, SurfelPlan& plan) {
     Planner planner(size, most, plan);
     for (const SurfelTriangles& object : objects) {
         const uint64_t key = fg::mixHash(fg::mixHash(fg::kHashStart, seed), object.set);
-        SurfelPlan::Set set{object.set, uint32_t(plan.patches.size()), 0, plan.surfels, 0};
+        const auto first = uint32_t(plan.patches.size());
         for (uint32_t triangle = 0; triangle < object.corners.size() / 3; ++triangle) {
             Piece piece;
             for (size_t i = 0; i < 3; ++i) piece.corners[i] = object.corners[3 * triangle + i];
@@ -135,9 +153,7 @@ bool tryPlan(std::span<const SurfelTriangles> objects, const SurfelSize& size, u
             piece.key = fg::mixHash(key, triangle);
             if (!planner.add(piece, triangle)) return false;
         }
-        set.patches = uint32_t(plan.patches.size()) - set.firstPatch;
-        set.surfels = plan.surfels - set.firstSurfel;
-        if (set.patches > 0) plan.sets.push_back(set);
+        addSets(plan, object.set, first);
     }
     return true;
 }

@@ -29,7 +29,7 @@ struct SurfelSize {
 };
 
 struct SurfelPlan {
-    /// The patches of one object.
+    /// Patches of one object, for one draw.
     struct Set {
         uint32_t set = 0, firstPatch = 0, patches = 0, firstSurfel = 0, surfels = 0;
     };

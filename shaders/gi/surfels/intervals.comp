@@ -28,15 +28,17 @@ Light upTo(Segment s, vec3 before, float fraction) {
 
 float opacityBehind(vec3 before) { return meanOf(vec3(oneMinusExp(before.r), oneMinusExp(before.g), oneMinusExp(before.b))); }
 
-/// The fraction of a segment's optical depth after which the opacity is `target`. Newton's method on the logarithm of the mean transmittance, which is all but
-/// linear in the fraction, and exactly where the channels are alike.
+/// Optical depth of a grey medium of this opacity, without cancellation.
+float depthOfOpacity(float opacity) { return opacity * minusLogOneMinusOverZ(min(opacity, 1.0)); }
+
 float fractionAtOpacity(vec3 before, vec3 depth, float target) {
-    float wanted = log(max(1.0 - target, 1e-30));
+    float wanted = depthOfOpacity(target);
     float fraction = 0.0;
     for (int i = 0; i < 4; ++i) {
-        vec3 through = exp(-(before + fraction * depth));
+        vec3 gone = before + fraction * depth;
+        vec3 through = exp(-gone);
         float mean = max(meanOf(through), 1e-30);
-        fraction += (log(mean) - wanted) * mean / max(meanOf(through * depth), 1e-30);
+        fraction += (wanted - depthOfOpacity(opacityBehind(gone))) * mean / max(meanOf(through * depth), 1e-30);
         fraction = clamp(fraction, 0.0, 1.0);
     }
     return fraction;
@@ -131,6 +133,7 @@ void main() {
         } else {
             Light light = upTo(s, march.before, fraction);
             for (int g = 0; g < PHASE_GROUPS; ++g) light.of[g] += sum.of[g];
+            if (cutter.next + 1u == events) light = total;
             putBorder(number, cutter, light, total);
         }
         ++cutter.next;

@@ -12,13 +12,14 @@ layout(std430) readonly buffer Brightness { SurfelBrightness brightness; };
 
 const float kEndless = 1e18; // metres; its square is finite
 
-/// Radius within which a surfel counts at the finest level: there its light in the media is more than ε of the average.
-/// The printed radius, r B/ε, has no root; B is taken over the average.
+/// Radius within which a surfel counts at the finest level: there its light in the media is more than ε of the light that half a sphere of average radiance gives. Around a dim surfel
+/// it is less bright: its own radiance counts as much as the average. The printed radius, r B/ε, has no root; B is taken over the average.
 float reachOf(LitSurfel s) {
     float mean = brightness.weighted / max(brightness.total, 1e-37);
-    float relative = s.normal.w / max(splat.threshold * mean, 1e-37);
+    float relative = s.normal.w / max(mean, 1e-37);
     float radius = sqrt(s.position.w / 3.14159265);
-    return min(radius * (splat.mode == kSurfelEncodingPaper ? relative : sqrt(0.5 * relative)), 0.5 * kEndless / 64.0);
+    float reach = splat.mode == kSurfelEncodingPaper ? relative / splat.threshold : sqrt(max(relative, sqrt(relative)) / (2.0 * splat.threshold));
+    return min(radius * reach, 0.5 * kEndless / 64.0);
 }
 
 /// Surfels in turn, with the digits of their numbers, base 4, in reverse: any four surfels in a row are in different quarters of the ranks. The paper chooses at random.
