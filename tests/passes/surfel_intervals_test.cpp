@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <functional>
 #include <optional>
 
@@ -182,9 +183,10 @@ protected:
         inputs.march.media = ~0u;
         inputs.gbuffer.depth = addDepth(graph, request.surface);
         const SurfelIntervals map =
-            addSurfelIntervals(graph, inputs, request.factor, request.count, request.jitter);
-        for (const fg::TextureHandle texture : {map.ways, map.totals, map.intervals})
+            addSurfelIntervals(graph, inputs, intervalsOf(request));
+        for (const fg::TextureHandle texture : {map.ways, map.totals, map.shares})
             graph.markOutput(texture);
+        graph.markOutput(map.places);
         const Result<void> done = executor_->execute();
         if (!done) throw std::runtime_error(done.message());
         return decode(map, request);
@@ -207,6 +209,13 @@ protected:
     }
 
 private:
+    static IntervalRequest intervalsOf(const Request& request) {
+        IntervalRequest made;
+        made.factor = request.factor;
+        made.count = request.count;
+        made.jitter = request.jitter;
+        return made;
+    }
     static fg::TextureHandle addDepth(fg::FrameGraph& graph, double surface) {
         struct Data {
             fg::TextureHandle depth;
@@ -232,11 +241,14 @@ private:
         const int side = map.params.size.x;
         EXPECT_EQ(side, (kSide + request.factor - 1) / request.factor);
         const Image ways = executor_->readImage(map.ways);
-        std::vector<Image> totals, intervals;
+        std::vector<Image> totals, shares;
+        const std::vector<std::byte> bytes = executor_->readBuffer(map.places);
+        std::vector<uint16_t> places(bytes.size() / sizeof(uint16_t));
+        std::memcpy(places.data(), bytes.data(), bytes.size());
         for (uint32_t group = 0; group < map.params.groups; ++group)
             totals.push_back(executor_->readImage(map.totals, int(group)));
         for (uint32_t layer = 0; layer < map.params.groups * request.count; ++layer)
-            intervals.push_back(executor_->readImage(map.intervals, int(layer)));
+            shares.push_back(executor_->readImage(map.shares, int(layer)));
         std::vector<Way> result;
         for (int y = 0; y < side; ++y)
             for (int x = 0; x < side; ++x) {
@@ -259,8 +271,9 @@ private:
                 if (!(made.length > 0)) continue;
                 for (uint32_t i = 0; i < request.count; ++i)
                     for (uint32_t group = 0; group < map.params.groups; ++group) {
-                        const float* texel = intervals[i * map.params.groups + group].at(x, row);
-                        const double code = std::round(double(texel[0]) * kCodes);
+                        const float* texel = shares[i * map.params.groups + group].at(x, row);
+                        const double code =
+                            places[(size_t(y) * size_t(side) + size_t(x)) * request.count + i];
                         const double at =
                             made.start + made.length *
                                              (std::pow(1 + kCodeRatio, code / kCodes) - 1) /
@@ -268,7 +281,7 @@ private:
                         if (group == 0) made.distances.push_back(at);
                         dvec3 weight;
                         for (int c = 0; c < 3; ++c) {
-                            const double share = std::round(double(texel[c + 1]) * kCodes);
+                            const double share = std::round(double(texel[c]) * kCodes);
                             made.shares[group][c] += int(share);
                             weight[c] = share / kCodes * double(totals[group].at(x, row)[c]);
                         }

@@ -204,7 +204,7 @@ TEST_P(SurfelPointsTest, TheTessellatorsSurfelsAreThoseOfTheComputeShader) {
         place(sceneOf(lambert(), textured));
         const std::vector<gpu::Surfel> tessellated = surfels(Surfelizer::Tessellator),
                                        computed = surfels(Surfelizer::Compute);
-        double farthest = 0, otherArea = 0, otherAlbedo = 0, otherNormal = 0;
+        double farthest = 0, otherArea = 0, otherBase = 0, otherNormal = 0;
         for (size_t patch = 0; patch < placed_.size(); ++patch) {
             std::vector<bool> taken(surfelsOfLevel(plan_.patches[patch].level));
             for (const gpu::Surfel& one : of(patch, computed)) {
@@ -224,19 +224,19 @@ TEST_P(SurfelPointsTest, TheTessellatorsSurfelsAreThoseOfTheComputeShader) {
                 farthest = std::max(farthest, distance / placed_[patch].size());
                 otherArea =
                     std::max(otherArea, std::abs(double(other.position.w / one.position.w) - 1));
-                otherAlbedo =
-                    std::max(otherAlbedo, double(glm::distance(other.albedo, one.albedo)));
+                otherBase =
+                    std::max(otherBase, double(glm::distance(other.base, one.base)));
                 otherNormal =
                     std::max(otherNormal, double(glm::distance(other.normal, one.normal)));
             }
         }
         printf(
-            "positions differ by %.1e of the patch, areas by %.1e, albedo by %.1e, normals by %.1e\n",
-            farthest, otherArea, otherAlbedo, otherNormal);
+            "positions differ by %.1e of the patch, areas by %.1e, colours by %.1e, normals by %.1e\n",
+            farthest, otherArea, otherBase, otherNormal);
         EXPECT_LT(farthest, kFixedPoint);
         EXPECT_LT(otherArea, 1e-6);
         // Interpolated colours change as places do; a texture of two texels changes twice as fast.
-        EXPECT_LT(otherAlbedo, 4 * kFixedPoint);
+        EXPECT_LT(otherBase, 4 * kFixedPoint);
         EXPECT_LT(otherNormal, 1e-6);
     }
 }
@@ -355,8 +355,8 @@ TEST_P(SurfelPointsTest, ThreePointsIntegrateQuadraticFunctions) {
     }
 }
 
-TEST_P(SurfelPointsTest, AlbedoIsTheMaterialsTimesTheColourThere) {
-    // Lambert without a coat: exactly the base colour, of which vertex colours are linear.
+TEST_P(SurfelPointsTest, BaseColourIsTheMaterialsTimesTheColourThere) {
+    // Vertex colours are linear.
     const Scene scene = sceneOf(lambert(), false);
     place(scene);
     for (const Surfelizer by : {Surfelizer::Tessellator, Surfelizer::Compute}) {
@@ -374,7 +374,7 @@ TEST_P(SurfelPointsTest, AlbedoIsTheMaterialsTimesTheColourThere) {
                         weights[int(i)] *
                         dvec3(mesh.colors[mesh.indices[3 * plan_.patches[patch].triangle + i]]);
                 expected *= dvec3(0.8, 0.6, 0.4);
-                EXPECT_LT(glm::distance(dvec3(surfel.albedo), expected), 1e-4);
+                EXPECT_LT(glm::distance(dvec3(surfel.base), expected), 1e-4);
             }
         }
     }
@@ -383,7 +383,7 @@ TEST_P(SurfelPointsTest, AlbedoIsTheMaterialsTimesTheColourThere) {
     unlit.unlit = true;
     place(sceneOf(unlit, false));
     for (const gpu::Surfel& surfel : surfels(Surfelizer::Tessellator))
-        EXPECT_EQ(vec3(surfel.albedo), vec3(0));
+        EXPECT_EQ(surfel.surface.y, 0);
 }
 
 TEST_P(SurfelPointsTest, HolesHaveNoArea) {
