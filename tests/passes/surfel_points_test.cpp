@@ -242,26 +242,26 @@ TEST_P(SurfelPointsTest, TheTessellatorsSurfelsAreThoseOfTheComputeShader) {
 }
 
 TEST_P(SurfelPointsTest, AsManyPatchesAsThereMayBeAreTessellated) {
-    // One object's patches are one draw: its points outnumber what 16 bits count.
+    // Points of one object that outnumber what 16 bits count.
     place(sceneOf(lambert(), false));
     const gpu::SurfelPatch pattern = plan_.patches[2 * gpu::kSurfelMostLevel - 2];
     ASSERT_EQ(pattern.level, gpu::kSurfelMostLevel);
     const uint32_t each = surfelsOfLevel(pattern.level);
     for (const uint32_t surfels : {60000u, 66000u, 130000u}) {
         plan_ = {};
-        SurfelPlan::Set set{0, 0, surfels / each, 0, surfels / each * each};
-        for (uint32_t i = 0; i < set.patches; ++i) {
+        const uint32_t patches = surfels / each;
+        for (uint32_t i = 0; i < patches; ++i) {
             gpu::SurfelPatch patch = pattern;
             patch.firstSurfel = i * each;
             patch.area = float(i + 1); // which tells patches apart
             plan_.patches.push_back(patch);
         }
-        plan_.surfels = set.surfels;
-        plan_.sets = {set};
+        plan_.surfels = patches * each;
+        addSets(plan_, 0, 0);
         const std::vector<gpu::Surfel> tessellated = this->surfels(Surfelizer::Tessellator),
                                        computed = this->surfels(Surfelizer::Compute);
         size_t wrong = 0, first = 0;
-        for (size_t patch = 0; patch < set.patches; ++patch) {
+        for (size_t patch = 0; patch < patches; ++patch) {
             double area = 0, expected = 0;
             for (uint32_t i = 0; i < each; ++i) {
                 area += double(tessellated[patch * each + i].position.w);
@@ -271,7 +271,7 @@ TEST_P(SurfelPointsTest, AsManyPatchesAsThereMayBeAreTessellated) {
             if (std::abs(area / expected - 1) < 1e-5) continue;
             if (wrong++ == 0) first = patch;
         }
-        EXPECT_EQ(wrong, 0u) << "of " << set.patches << " patches, of " << set.surfels
+        EXPECT_EQ(wrong, 0u) << "of " << patches << " patches, of " << plan_.surfels
                              << " surfels; the first is patch " << first << ", from surfel "
                              << first * each;
     }

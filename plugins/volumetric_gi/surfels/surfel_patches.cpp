@@ -117,23 +117,6 @@ private:
     std::vector<Piece> pieces_;
 };
 
-/// Patches of one object from `first` on, in as many draws as they need.
-void addSets(SurfelPlan& plan, uint32_t set, uint32_t first) {
-    SurfelPlan::Set part{set, first, 0, 0, 0};
-    for (uint32_t i = first; i < plan.patches.size(); ++i) {
-        const gpu::SurfelPatch& patch = plan.patches[i];
-        const uint32_t surfels = surfelsOfLevel(patch.level);
-        if (part.surfels + surfels > kMostSurfelsOfSet) {
-            plan.sets.push_back(part);
-            part = {set, i, 0, 0, 0};
-        }
-        if (part.patches == 0) part.firstSurfel = patch.firstSurfel;
-        ++part.patches;
-        part.surfels += surfels;
-    }
-    if (part.patches > 0) plan.sets.push_back(part);
-}
-
 /// False where there are too many surfels.
 bool tryPlan(std::span<const SurfelTriangles> objects, const SurfelSize& size, uint32_t most,
              uint64_t seed, SurfelPlan& plan) {
@@ -172,6 +155,22 @@ double SurfelSize::at(const dvec3& position) const {
 uint32_t surfelsOfLevel(uint32_t level) {
     return level % 2 == 1 ? 3 * ((level + 1) / 2) * ((level + 1) / 2)
                           : 3 * (level / 2) * (level / 2 + 1) + 1;
+}
+
+void addSets(SurfelPlan& plan, uint32_t set, uint32_t first) {
+    SurfelPlan::Set part{set, first, 0, 0, 0};
+    for (uint32_t i = first; i < plan.patches.size(); ++i) {
+        const gpu::SurfelPatch& patch = plan.patches[i];
+        const uint32_t surfels = surfelsOfLevel(patch.level);
+        if (part.surfels + surfels > kMostSurfelsOfSet) {
+            plan.sets.push_back(part);
+            part = {set, i, 0, 0, 0};
+        }
+        if (part.patches == 0) part.firstSurfel = patch.firstSurfel;
+        ++part.patches;
+        part.surfels += surfels;
+    }
+    if (part.patches > 0) plan.sets.push_back(part);
 }
 
 SurfelPlan planSurfels(std::span<const SurfelTriangles> objects, SurfelSize size, uint32_t most,

@@ -43,6 +43,9 @@ struct SurfelPlan {
 /// Points of a patch of this level: those of OpenGL's tessellator with equal spacing in point mode.
 [[nodiscard]] uint32_t surfelsOfLevel(uint32_t level);
 
+/// Makes sets of a plan's patches of one object, which are those from number `first` on: as many as their draws need.
+void addSets(SurfelPlan& plan, uint32_t set, uint32_t first);
+
 /// Cuts triangles at their longest edges until each patch needs a level of at most kSurfelMostLevel and sizes in it are alike. A patch smaller than three surfels, the fewest that
 /// a patch has, is kept with a chance and has its area over that: the mean over `seed` is its area. Chances follow from the triangle's number, so that a patch stays from frame to
 /// frame. At most `most` surfels: all sizes grow by powers of 2^(1/4) until they are so few.
