@@ -22,13 +22,27 @@ float reachOf(LitSurfel s) {
     return min(radius * reach, 0.5 * kEndless / 64.0);
 }
 
-/// Surfels in turn, with the digits of their numbers, base 4, in reverse: any four surfels in a row are in different quarters of the ranks. The paper chooses at random.
+/// A surfel's place among its neighbours, in base 4: digit k from the k-th bits of its coordinates, in units of about its size. In a plane along any two axes, surfels of any
+/// block of 2^k × 2^k have different last k digits. It depends on nothing but the surfel: what is drawn besides, and where the eye is, does not make light flicker.
+uint placeDigits(LitSurfel s, uint digits) {
+    float unit = exp2(ceil(0.5 * log2(max(s.position.w, 1e-30))));
+    uvec3 cell = uvec3(ivec3(floor(clamp(s.position.xyz / unit, -1e9, 1e9))));
+    uint place = 0u;
+    for (uint k = 0u; k < digits; ++k) {
+        uvec3 bits = cell >> k & 1u;
+        place |= (bits.x ^ bits.z | (bits.y ^ bits.z) << 1u) << (2u * k);
+    }
+    return place;
+}
+
+/// By digits in reverse: four neighbours are in different quarters of the ranks. The paper chooses at random.
 uint subBufferFor(uint surfel, uint level) {
     uint count = 1u << (2u * level);
     uint shift = hashUint(splat.seed + level);
     if (splat.mode == kSurfelEncodingPaper) return hashUint(surfel + shift) & (count - 1u);
+    uint place = placeDigits(lit[surfel], level);
     uint rank = 0u;
-    for (uint digit = 0u; digit < level; ++digit) rank = rank << 2u | ((surfel >> (2u * digit)) & 3u);
+    for (uint digit = 0u; digit < level; ++digit) rank = rank << 2u | (place >> (2u * digit) & 3u);
     return (rank + shift) & (count - 1u);
 }
 
