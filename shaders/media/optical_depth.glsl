@@ -60,9 +60,14 @@ float brickIntegralExact(uint slot, LocalRay ray, vec3 inverse, float t0, float 
     return sum;
 }
 
+// A shader that needs no more than a few steps through a brick says how many.
+#ifndef MOST_BRICK_STEPS
+#define MOST_BRICK_STEPS kMostBrickSteps
+#endif
+
 /// The same by equal steps, each taken for its middle.
 float brickIntegralSteps(uint slot, LocalRay ray, float t0, float t1) {
-    float count = clamp(ceil((t1 - t0) * length(ray.direction) / mediaHeader.stepVoxels), 1.0, float(kMostBrickSteps));
+    float count = clamp(ceil((t1 - t0) * length(ray.direction) / mediaHeader.stepVoxels), 1.0, float(MOST_BRICK_STEPS));
     float width = (t1 - t0) / count;
     float sum = 0.0;
     for (float i = 0.5; i < count; i += 1.0) sum += filteredSample(slot, positionAt(ray, t0 + i * width));

@@ -16,6 +16,7 @@ flat in vec2 shell;
 
 layout(location = 0) out vec4 light; // w: 1 for each surfel that has come to the pixel
 
+const float kCoplanar = 1e-4; // cosine that rounding alone may have: surfels of the plane itself
 const float kLeastRoughness = 0.4; // smoother surfaces would show single surfels as spots
 
 void main() {
@@ -34,7 +35,7 @@ void main() {
     float cosine = dot(r.normal, direction);
     float height = -dot(way, s.normal.xyz);
     vec3 radiance = height > 0.0 ? s.front.rgb : s.back.rgb;
-    if (!(min(cosine, dot(r.facet, direction)) > 0.0) || !(maximumOf(radiance) > 0.0)) return;
+    if (!(min(cosine, dot(r.facet, direction)) > kCoplanar) || !(maximumOf(radiance) > 0.0)) return;
 #if RAYS
     if (splat.visibility != 0u && triangleBetween(r.position, s.position.xyz)) return;
 #endif
