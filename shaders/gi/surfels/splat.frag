@@ -47,6 +47,12 @@ struct Pair {
     vec3 position; // of the interval's point
 };
 
+vec3 totalOf[PHASE_GROUPS]; // of the ray
+
+void readTotals(ivec2 ray) {
+    for (uint g = 0u; g < min(map.groups, uint(PHASE_GROUPS)); ++g) totalOf[g] = texelFetch(totals, ivec3(ray, int(g)), 0).rgb;
+}
+
 /// Of the interval's light of all phase functions.
 vec3 scatteredToEye(ivec2 ray, RayWay way, uint interval, float cosine) {
     vec3 sum = vec3(0.0);
@@ -55,13 +61,13 @@ vec3 scatteredToEye(ivec2 ray, RayWay way, uint interval, float cosine) {
     vec2 texel = texelFetch(shares, ivec3(ray, int(interval)), 0).rg * kCodes;
     float through = 1.0 - float(interval + 1u) * (1.0 - way.opacity) / float(map.intervals - 1u);
     float weight = through * texel.x * way.length * (texel.y / 255.0) * way.largest;
-    sum = weight * texelFetch(totals, ivec3(ray, 0), 0).rgb * phaseFunction(uint(mediaHeader.phases[0].x), mediaHeader.phases[0].y, cosine);
+    sum = weight * totalOf[0] * phaseFunction(uint(mediaHeader.phases[0].x), mediaHeader.phases[0].y, cosine);
 #elif PHASE_GROUPS == 1
-    vec3 weight = texelFetch(totals, ivec3(ray, 0), 0).rgb * texelFetch(shares, ivec3(ray, int(interval)), 0).rgb;
+    vec3 weight = totalOf[0] * texelFetch(shares, ivec3(ray, int(interval)), 0).rgb;
     sum = weight * phaseFunction(uint(mediaHeader.phases[0].x), mediaHeader.phases[0].y, cosine);
 #else
     for (uint g = 0u; g < map.groups; ++g) {
-        vec3 weight = texelFetch(totals, ivec3(ray, int(g)), 0).rgb * texelFetch(shares, ivec3(ray, intervalLayer(interval, g)), 0).rgb;
+        vec3 weight = totalOf[g] * texelFetch(shares, ivec3(ray, intervalLayer(interval, g)), 0).rgb;
         sum += weight * phaseFunction(uint(mediaHeader.phases[g].x), mediaHeader.phases[g].y, cosine);
     }
 #endif
@@ -130,6 +136,7 @@ void main() {
         hole = firstInterval(places, codeOfDistance(way, abreast - inner));
         holeEnd = firstInterval(places, codeOfDistance(way, abreast + inner));
     }
+    readTotals(number);
     vec3 sum = vec3(0.0);
 #if RAYS == 1
     float u = unitFloat(hashUint(surfelNumber * 0x9e3779b9u + hashUint(uint(number.x) + hashUint(uint(number.y) + splat.seed))));
