@@ -11,6 +11,7 @@
 
 #include "core/image_metrics.h"
 #include "gi_scenes.h"
+#include "scene/scene_edit.h"
 #include "support/render.h"
 
 namespace tyndall::test {
@@ -421,6 +422,52 @@ TEST(Surfels, AHundredThousandDimSurfelsAddUp) {
             << surfelizer; // with half precision it would be some hundredths
         EXPECT_NEAR(all / few, 1, 0.02) << surfelizer;
     }
+}
+
+/// Of both receivers, with a medium that only some rays meet.
+Image beautyBy(TestRenderer& renderer, const std::vector<std::string>& settings) {
+    RenderOptions options = surfels(settings, 24, 16);
+    options.terms = terms(Term::LSVE, Term::LSSE);
+    return renderer
+        .render(twoFaces(
+                    R"({"name": "ball", "medium": {"type": "homogeneous", "shape": "sphere", "size": [1, 1, 1], "scattering": [2, 2, 2],
+                    "absorption": [0, 0, 0], "anisotropy": -0.4}, "translation": [0.5, 3.4, 0]},)"),
+                options)
+        .beauty;
+}
+
+TEST(Surfels, UndefinedMemoryNeverReachesThePicture) {
+    RendererOptions poisoned;
+    poisoned.poison = true;
+    static TestRenderer renderer(gl::Backend::Egl, poisoned);
+    for (const char* mode : {"gi.mode=corrected", "gi.mode=paper"})
+        for (const char* march : {"gi.surfels.march=full", "gi.surfels.march=quarter"})
+            EXPECT_EQ(beautyBy(renderer, {mode, march}).pixels,
+                      beautyBy(sharedRenderer(), {mode, march}).pixels)
+                << mode << ", " << march;
+}
+
+/// A picture does not depend on the view that was rendered before, and moving the eye a little moves light a little: no more than other chances of the hierarchy do.
+TEST(Surfels, ASmallStepOfTheEyeDoesNotMakeLightFlicker) {
+    const auto from = [&](double step, uint32_t seed) {
+        Scene scene = twoFaces();
+        for (size_t node = 0; node < scene.nodes.size(); ++node)
+            if (scene.nodes[node].camera != kNone)
+                setNodeTransform(scene, int(node), {step, 1.5, 6}, dquat(1, 0, 0, 0), dvec3(1));
+        RenderOptions options = surfels({"gi.surfels.blur=false", "gi.surfels.epsilon=0.3"});
+        options.seed = seed;
+        return pictureOf(scene, options);
+    };
+    const auto relmse = [](const Image& a, const Image& b) {
+        return compareImages(a, b).value().relmse;
+    };
+    double steps = 0, seeds = 0;
+    for (uint32_t i = 0; i < 6; ++i) {
+        steps += relmse(from(0.002 * (i + 1), 0), from(0.002 * i, 0)) / 6;
+        seeds += relmse(from(0, i + 1), from(0, i)) / 6;
+    }
+    printf("relmse from step to step %.5f, from seed to seed %.5f\n", steps, seeds);
+    EXPECT_LT(steps, 0.1 * seeds);
 }
 
 } // namespace
