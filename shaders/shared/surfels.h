@@ -54,8 +54,8 @@ struct SurfelSet {
 struct SurfelLightParams {
     uint surfelCount;
     uint lightCount;
-    uint first;      // of the surfels of this turn
-    uint hasMedia;   // 1: media take light away on the way from lights
+    uint padding0;
+    uint padding1;
 };
 
 /// Buffer `SurfelBrightness`: of all lit surfels.
@@ -65,9 +65,6 @@ struct SurfelBrightness {
     float padding0;
     float padding1;
 };
-
-TYNDALL_CONST uint kSurfelEveryInterval = 2u; // SurfelMapParams.rays: a visibility ray for each interval
-TYNDALL_CONST uint kSurfelOneInterval = 1u;   // one, to an interval chosen by its light
 
 /// Uniform block `IntervalMap`.
 struct SurfelMapParams {

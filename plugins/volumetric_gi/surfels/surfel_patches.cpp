@@ -12,6 +12,7 @@ namespace {
 constexpr uint32_t kMostLevel = gpu::kSurfelMostLevel;
 constexpr double kFewest = 3; // points that a patch has at least
 constexpr uint32_t kMostSurfelsOfSet = 65535; // Mesa's software drivers count a draw's points with 16 bits
+constexpr uint32_t kMostPlanned = 8; // times as many surfels as there may be, before sizes grow
 constexpr int kMostCuts = 40; // of one triangle after another; 2^-40 of its area is nothing
 
 /// A patch while it is cut.
@@ -29,7 +30,7 @@ double areaOf(const std::array<dvec3, 3>& corners) {
 
 class Planner {
 public:
-    Planner(const SurfelSize& size, uint32_t most, SurfelPlan& plan)
+    Planner(const SurfelSize& size, uint64_t most, SurfelPlan& plan)
         : size_(size), most_(most), plan_(plan) {}
 
     /// False where there are too many surfels.
@@ -112,13 +113,13 @@ private:
     }
 
     const SurfelSize& size_;
-    uint32_t most_;
+    uint64_t most_;
     SurfelPlan& plan_;
     std::vector<Piece> pieces_;
 };
 
 /// False where there are too many surfels.
-bool tryPlan(std::span<const SurfelTriangles> objects, const SurfelSize& size, uint32_t most,
+bool tryPlan(std::span<const SurfelTriangles> objects, const SurfelSize& size, uint64_t most,
              uint64_t seed, SurfelPlan& plan) {
     Planner planner(size, most, plan);
     for (const SurfelTriangles& object : objects) {
@@ -176,13 +177,16 @@ void addSets(SurfelPlan& plan, uint32_t set, uint32_t first) {
 SurfelPlan planSurfels(std::span<const SurfelTriangles> objects, SurfelSize size, uint32_t most,
                        uint64_t seed) {
     const double first = size.scale;
-    SurfelPlan plan;
-    while (!tryPlan(objects, size, most, seed, plan)) {
-        plan = {};
-        size.scale *= std::pow(2, 0.25);
+    for (;;) {
+        SurfelPlan plan;
+        plan.scale = size.scale / first;
+        const bool whole = tryPlan(objects, size, uint64_t(kMostPlanned) * most, seed, plan);
+        if (whole && plan.surfels <= most) return plan;
+        if (!std::isfinite(size.scale)) return {}; // sizes are 0 everywhere
+        // Numbers go with the inverse square of sizes: as far as that says, but not farther.
+        const double growth = std::sqrt(double(plan.surfels) / most);
+        size.scale *= std::pow(2, 0.25 * std::max(std::floor(4 * std::log2(growth)), 1.0));
     }
-    plan.scale = size.scale / first;
-    return plan;
 }
 
 } // namespace tyndall::volumetric_gi

@@ -103,7 +103,7 @@ SurfelLight addSurfelLight(fg::FrameGraph& graph, const plugin::FrameInputs& inp
             data.lights = readLights(builder, inputs.lights);
             if (inputs.media.count > 0) data.media = readMedia(builder, inputs.media);
             data.view = inputs.view;
-            data.params = {count, inputs.lights.lightCount, 0, inputs.media.count > 0};
+            data.params = {count, inputs.lights.lightCount, 0, 0};
         },
         [](const Data& data, fg::PassContext& context) {
             auto command = context.compute("gi/surfels/light.comp",

@@ -108,7 +108,9 @@ plugin::SettingsTable SurfelsTechnique::settings() {
 }
 
 void SurfelsTechnique::updateTriangles(const plugin::FrameInputs& inputs) {
-    const uint64_t key = cacheKey(inputs.scene.geometry, inputs.origin[0], inputs.origin[1], inputs.origin[2]);
+    // A material decides whether its object is drawn in this way at all.
+    const uint64_t key = cacheKey(inputs.scene.geometry, inputs.scene.materials, inputs.origin[0],
+                                  inputs.origin[1], inputs.origin[2]);
     if (key == trianglesKey_) return;
     trianglesKey_ = key;
     corners_.clear();

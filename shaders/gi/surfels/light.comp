@@ -80,7 +80,7 @@ vec3 nearGlowOn(vec3 position, vec3 normal, vec3 u) {
 #endif
 
 void main() {
-    uint number = lighting.first + gl_GlobalInvocationID.x;
+    uint number = gl_GlobalInvocationID.x;
     if (number >= lighting.surfelCount) return;
     Surfel s = surfels[number];
     SidesLight sum = SidesLight(vec3(0.0), vec3(0.0));
