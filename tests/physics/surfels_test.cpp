@@ -470,5 +470,42 @@ TEST(Surfels, ASmallStepOfTheEyeDoesNotMakeLightFlicker) {
     EXPECT_LT(steps, 0.1 * seeds);
 }
 
+TEST(Surfels, WhatIsDarkOrOutOfReachIsNotSplatted) {
+    const auto countsOf = [](const Scene& scene, const std::vector<std::string>& settings) {
+        RenderOptions options = surfels(settings, 16, 12);
+        options.statistics = true;
+        return sharedRenderer().render(scene, options).statistics;
+    };
+    // A lamp that looks down, at a height above the floor.
+    const auto scene = [](double y, double far) {
+        return sceneFromJson(fmt::format(
+            R"({{"tyndall": 1, "nodes": [
+            {{"name": "floor", "primitive": {{"shape": "plane", "size": [4, 4]}}, "translation": [0, 0, {0}]}},
+            {{"name": "wall", "primitive": {{"shape": "box", "size": [4, 3, 0.1]}}, "translation": [0, 1.5, {1}]}}, {2}
+            {{"name": "lamp", "light": {{"type": "spot", "intensity": 50, "outerConeAngle": 0.3}}, "translation": [0, {3}, {0}],
+                "rotation": [-0.70710678, 0, 0, 0.70710678]}},
+            {{"name": "eye", "camera": {{"type": "perspective", "yfov": 0.8}}, "translation": [0, 1.5, 6]}}],
+            "camera": "eye"}})",
+            far, far - 2, kFog, y));
+    };
+    const auto lit = countsOf(scene(2, 0), {});
+    EXPECT_GT(lit.at("surfels_lit.gi.surfels"), 0);
+    EXPECT_LT(lit.at("surfels_lit.gi.surfels"), 0.5 * lit.at("surfels.gi.surfels"));
+    // A quad a level at most.
+    EXPECT_GE(lit.at("splats.gi.surfels"), lit.at("surfels_lit.gi.surfels"));
+    EXPECT_LE(lit.at("splats.gi.surfels"), 6 * lit.at("surfels_lit.gi.surfels"));
+    EXPECT_GT(lit.at("pairs.gi.surfels"), 0);
+    // The printed shells end: a floor farther away than that reaches no fog.
+    const auto far = countsOf(scene(2, -100), {"gi.mode=paper", "gi.surfels.levels=1",
+                                               "gi.surfels.size=0.5"});
+    EXPECT_GT(far.at("surfels_lit.gi.surfels"), 0);
+    EXPECT_EQ(far.at("splats.gi.surfels"), 0);
+    EXPECT_EQ(far.at("pairs.gi.surfels"), 0);
+    // Nothing is below it.
+    const auto dark = countsOf(scene(-1, 0), {});
+    EXPECT_EQ(dark.at("surfels_lit.gi.surfels"), 0);
+    EXPECT_EQ(dark.at("splats.gi.surfels"), 0);
+}
+
 } // namespace
 } // namespace tyndall::test

@@ -161,7 +161,7 @@ const char* SurfelsTechnique::whyNothing(const plugin::FrameInputs& inputs) {
         return "the surfaces do not fit into memory";
     }
     makePlan(inputs);
-    return plan_.surfels == 0 ? "no surface has an area" : nullptr;
+    return plan_.surfels == 0 ? "no surface is as large as a surfel" : nullptr;
 }
 
 IntervalRequest SurfelsTechnique::intervals(const plugin::FrameInputs& inputs) const {
