@@ -482,11 +482,11 @@ TEST(Surfels, WhatIsDarkOrOutOfReachIsNotSplatted) {
             R"({{"tyndall": 1, "nodes": [
             {{"name": "floor", "primitive": {{"shape": "plane", "size": [4, 4]}}, "translation": [0, 0, {0}]}},
             {{"name": "wall", "primitive": {{"shape": "box", "size": [4, 3, 0.1]}}, "translation": [0, 1.5, {1}]}}, {2}
-            {{"name": "lamp", "light": {{"type": "spot", "intensity": 50, "outerConeAngle": 0.3}}, "translation": [0, {3}, {0}],
+            {{"name": "lamp", "light": {{"type": "spot", "intensity": 50, "outerConeAngle": {4}}}, "translation": [0, {3}, {0}],
                 "rotation": [-0.70710678, 0, 0, 0.70710678]}},
             {{"name": "eye", "camera": {{"type": "perspective", "yfov": 0.8}}, "translation": [0, 1.5, 6]}}],
             "camera": "eye"}})",
-            far, far - 2, kFog, y));
+            far, far - 2, kFog, y, far < 0 ? 1.2 : 0.3));
     };
     const auto lit = countsOf(scene(2, 0), {});
     EXPECT_GT(lit.at("surfels_lit.gi.surfels"), 0);
