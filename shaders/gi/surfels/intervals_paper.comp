@@ -15,7 +15,7 @@ layout(rgba32f) writeonly uniform image2D ways;
 layout(rgba32f) writeonly uniform image2DArray totals;
 layout(rgba16) writeonly uniform image2DArray shares;
 
-const uint kMostSteps = 4096u; // n_max
+const uint kMostSteps = 512u; // n_max: two and a half times through the scene
 
 struct Medium {
     vec3 scattering; // per metre
