@@ -84,6 +84,7 @@ TYNDALL_CONST uint kSurfelEncodingPaper = 1u;
 struct SurfelSplatParams {
     vec4 mediaMinimum;  // of the box around the media, render space
     vec4 mediaMaximum;
+    vec4 anchor;        // a point that moves with the scene, render space
     vec4 focal;         // x, y: clip coordinates per slope, of the view; perspective
     ivec2 size;         // rays
     ivec2 textureSize;  // texels of a level

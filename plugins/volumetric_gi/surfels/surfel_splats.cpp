@@ -51,6 +51,8 @@ gpu::SurfelSplatParams splatParams(const plugin::FrameInputs& inputs, const Spla
     const bool everywhere = request.reached.empty();
     params.mediaMinimum = everywhere ? vec4(-kFarAway) : vec4(vec3(request.reached.minimum), 0);
     params.mediaMaximum = everywhere ? vec4(kFarAway) : vec4(vec3(request.reached.maximum), 0);
+    for (int i = 0; i < 3; ++i)
+        params.anchor[i] = inputs.scene.contentMinimum[i] < kFarAway ? inputs.scene.contentMinimum[i] : 0;
     params.focal = vec4(focalOf(inputs.view.data), 0, 0);
     params.size = request.size;
     const int coarsest = 1 << (request.levels - 1);

@@ -26,7 +26,7 @@ float reachOf(LitSurfel s) {
 /// block of 2^k × 2^k have different last k digits. It depends on nothing but the surfel: what is drawn besides, and where the eye is, does not make light flicker.
 uint placeDigits(LitSurfel s, uint digits) {
     float unit = exp2(ceil(0.5 * log2(max(s.position.w, 1e-30))));
-    uvec3 cell = uvec3(ivec3(floor(clamp(s.position.xyz / unit, -1e9, 1e9))));
+    uvec3 cell = uvec3(ivec3(floor(clamp((s.position.xyz - splat.anchor.xyz) / unit + 0.37, -1e9, 1e9))));
     uint place = 0u;
     for (uint k = 0u; k < digits; ++k) {
         uvec3 bits = cell >> k & 1u;

@@ -104,7 +104,7 @@ TEST_F(MadeTechnique, RendersAndIsListed) {
     EXPECT_GT(brightest, 0);
     const ProcessResult unknown = capture("no_such", folder / "none.exr");
     EXPECT_NE(unknown.status, 0);
-    EXPECT_THAT(unknown.err, HasSubstr("octaves, lpv, vpl, two_fold"));
+    EXPECT_THAT(unknown.err, HasSubstr("octaves, lpv, vpl, surfels, two_fold"));
 }
 
 /// The laws that each technique breaks.
