@@ -189,7 +189,7 @@ def motion_table(bench, content):
             continue
         for blur in ("true", "false"):
             frames = [bench.light(bench.scene(f"{name} moved {i}", moved(scene, i * chosen[name])), f"moved.{blur}", "--set", f"gi.surfels.blur={blur}")[0] for i in range(5)]
-            still = bench.scene(f"{name} moved 0", moved(scene, 0))
+            still = bench.scene(f"{name} moved 0", moved(scene, 0.0))
             seeds = [bench.light(still, f"seed{seed}.{blur}", "--set", f"gi.surfels.blur={blur}", "--seed", seed)[0] for seed in range(1, 4)]
             # The relative difference of two pictures, as compare's relmse has it: |v - r|² over r² + 0.01 m².
             rms = lambda pairs: (sum(bench.compare(a, b)[0] for a, b in pairs) / len(pairs)) ** 0.5
